@@ -1,0 +1,107 @@
+// The program: flags in, words and exit code out. What each command does is in its own file.
+
+#include <csignal>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include <tbb/global_control.h>
+
+#include "app/commands.h"
+#include "scene/input_error.h"
+
+namespace lobe {
+namespace {
+
+constexpr const char* kDescription =
+    "Lobe solves glossy global illumination once, on a mesh, and shows it from anywhere.\n"
+    "Every mesh node stores the light that leaves it in every direction, as a short list of\n"
+    "spherical-harmonic coefficients: its lobe. `lobe solve` fills the lobes, `lobe render` reads them.\n";
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  lobe info scene.glb\n"
+    "  lobe solve scene.glb -o solution.glb --edge 0.2\n"
+    "  lobe render solution.glb --camera view0 -o view.exr -o view.png --size 800x600\n"
+    "  lobe inspect solution.glb --camera view0 --pixel 120,80 -o lobe.svg\n"
+    "  lobe compare view.exr reference.exr --mask lamps.png -o difference.png\n"
+    "\n"
+    "Results go to standard output, progress and warnings to standard error.\n"
+    "Exit codes: 0 done; 1 something was wrong with the input or the machine; 2 wrong usage;\n"
+    "3 stopped early (interrupt, a time or step limit, not converging), result saved.\n"
+    "`lobe COMMAND --help` explains a command's flags.";
+
+void AddCommonFlags(CLI::App* command, CommonFlags* flags) {
+  command->add_option("--threads", flags->threads, "Threads to use [all processors]")
+      ->type_name("N")
+      ->group("Common");
+  command->add_flag("--json", flags->json, "Print one JSON object on standard output, nothing else")
+      ->group("Common");
+  command->add_flag("--quiet", flags->quiet, "No progress, warnings or tables on standard error")
+      ->group("Common");
+}
+
+ExitCode Run(CLI::App& app, const CommonFlags& flags, const Command& command, bool threads_given) {
+  try {
+    if (threads_given && flags.threads < 1) {
+      throw UsageError("--threads: " + std::to_string(flags.threads) +
+                       " is out of range: 1 or more is expected");
+    }
+    std::optional<tbb::global_control> limit;
+    if (threads_given) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(flags.threads));
+    Console console(flags.json, flags.quiet);
+    return command(console);
+  } catch (const UsageError& e) {
+    PrintError(std::string(e.what()) + " (lobe " + app.get_subcommands().front()->get_name() + " --help)");
+    return kWrongUsage;
+  } catch (const std::bad_alloc&) {
+    PrintError("out of memory");
+  } catch (const std::exception& e) {
+    PrintError(e.what());
+  }
+  return kFailed;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app{kDescription, "lobe"};
+  app.set_version_flag("--version", "lobe " LOBE_VERSION);
+  app.footer(kFooter);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+
+  Command command;
+  AddSolveCommand(app, &command);
+  AddRenderCommand(app, &command);
+  AddInfoCommand(app, &command);
+  AddInspectCommand(app, &command);
+  AddCompareCommand(app, &command);
+  CommonFlags flags;
+  for (CLI::App* sub : app.get_subcommands({})) AddCommonFlags(sub, &flags);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& e) {
+    const auto chosen = app.get_subcommands();
+    PrintError(std::string(e.what()) + " (lobe " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
+               "--help)");
+    return kWrongUsage;
+  }
+  return Run(app, flags, command, app.get_subcommands().front()->count("--threads") > 0);
+}
+
+}  // namespace
+}  // namespace lobe
+
+int main(int argc, char** argv) {
+  // A file size limit is an error like any other, which writing reports.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    return lobe::Main(argc, argv);
+  } catch (const std::exception& e) {
+    lobe::PrintError(e.what());
+    return lobe::kFailed;
+  }
+}

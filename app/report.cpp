@@ -1,0 +1,221 @@
+#include "app/report.h"
+
+#include <algorithm>
+
+#include "app/console.h"
+#include "solver/exposure.h"
+
+namespace lobe {
+namespace {
+
+using nlohmann::json;
+
+struct LedgerEntry {
+  const char* name;
+  Ledger::Power Ledger::*power;
+  const char* meaning;
+};
+constexpr LedgerEntry kLedger[] = {
+    {"emitted", &Ledger::emitted, "by the lamps"},
+    {"imbalance", &Ledger::imbalance, "made (+) or lost (-) by the mesh"},
+    {"absorbed", &Ledger::absorbed, "by surfaces"},
+    {"blocked", &Ledger::blocked, "by black backs and unlit sides"},
+    {"escaped", &Ledger::escaped, "out of the scene"},
+    {"mirrored", &Ledger::mirrored, "by ideal mirrors, not followed"},
+    {"truncated", &Ledger::truncated, "by cut-off lobes"},
+    {"unshot", &Ledger::unshot, "still waiting"},
+    {"sent", &Ledger::sent, "emitted and passed on"},
+    {"delivered", &Ledger::delivered, "of it, arrived"},
+    {"reflected", &Ledger::reflected, "of that, reflected"},
+};
+constexpr size_t kBalanceEntries = 8;  ///< the first ones balance; the others are turnover
+
+double Sum(const Ledger::Power& power) { return power[0] + power[1] + power[2]; }
+
+std::string Percent(double fraction) { return Format("%.3g", 100 * fraction) + " %"; }
+
+std::string Degree(int l_max) { return l_max < 0 ? "-" : std::to_string(l_max); }
+
+size_t HiddenCount(const Solution& s) {
+  return static_cast<size_t>(
+      std::count_if(s.hidden.begin(), s.hidden.end(), [](uint8_t h) { return h != 0; }));
+}
+
+size_t LobeBytes(const Solution& s) { return s.total.bytes() + s.direct.bytes() + s.unshot.bytes(); }
+
+Rgb EmittedPower(const Scene& scene) {
+  Rgb power = Rgb::Zero();
+  for (const Emitter& e : FindEmitters(scene)) power += 3.14159265f * e.area * e.radiance;
+  return power;
+}
+
+}  // namespace
+
+json ToJson(const Rgb& c) { return {c[0], c[1], c[2]}; }
+json ToJson(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& options) {
+  TableCache cache;
+  std::vector<MaterialRow> rows;
+  for (const Material& m : scene.materials) {
+    const MaterialLobes lobes(m.reflectance, options, cache);
+    rows.push_back({m.name, Describe(m.reflectance), lobes.kind(), lobes.base.l_max, lobes.gloss.l_max,
+                    lobes.gloss.error, m.emission});
+  }
+  return rows;
+}
+
+std::vector<MaterialRow> MaterialRows(const Solution& solution) {
+  std::vector<MaterialRow> rows;
+  for (size_t i = 0; i < solution.scene.materials.size(); ++i) {
+    const Material& m = solution.scene.materials[i];
+    rows.push_back({m.name, Describe(m.reflectance), solution.material_kinds[i], -1, -1,
+                    solution.material_errors[i], m.emission});
+  }
+  for (size_t p = 0; p < solution.mesh.patches.size(); ++p) {
+    MaterialRow& row = rows[solution.mesh.patches[p].material];
+    row.l_max_base = solution.total.patch_degrees(uint32_t(p)).base;
+    row.l_max_gloss = solution.total.patch_degrees(uint32_t(p)).gloss;
+  }
+  return rows;
+}
+
+std::string MaterialText(const std::vector<MaterialRow>& rows) {
+  Table table("lllrrrr");
+  table.AddRow({"material", "model", "kind", "l_max base", "gloss", "lobe error", "radiance"});
+  for (const MaterialRow& r : rows) {
+    const bool has_lobe = r.kind == GlossKind::kLobe || r.kind == GlossKind::kSharp;
+    const bool emits = (r.emission > 0).any();
+    table.AddRow({r.name.empty() ? "(unnamed)" : r.name, r.model, Name(r.kind), Degree(r.l_max_base),
+                  Degree(r.l_max_gloss), has_lobe ? Percent(r.lobe_error) : "-",
+                  emits ? Short(Luminance(r.emission)) : "-"});
+  }
+  return table.Text();
+}
+
+json MaterialJson(const std::vector<MaterialRow>& rows) {
+  json list = json::array();
+  for (const MaterialRow& r : rows) {
+    json entry = {{"name", r.name},
+                  {"model", r.model},
+                  {"kind", Name(r.kind)},
+                  {"lobe_error", r.lobe_error},
+                  {"emission", ToJson(r.emission)}};
+    entry["l_max_base"] = r.l_max_base < 0 ? json() : json(r.l_max_base);
+    entry["l_max_gloss"] = r.l_max_gloss < 0 ? json() : json(r.l_max_gloss);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+std::string LedgerText(const Ledger& ledger) {
+  const double emitted = Sum(ledger.emitted);
+  Table table("lrrrrl");
+  table.AddRow({"power", "R [W]", "G [W]", "B [W]", "of emitted", ""});
+  for (size_t i = 0; i < std::size(kLedger); ++i) {
+    if (i == kBalanceEntries) table.AddRow({""});
+    const Ledger::Power& p = ledger.*kLedger[i].power;
+    table.AddRow({kLedger[i].name, Short(p[0]), Short(p[1]), Short(p[2]),
+                  emitted > 0 ? Format("%.2f %%", 100 * Sum(p) / emitted) : "-", kLedger[i].meaning});
+  }
+  return table.Text() + "  balance closes to " + Format("%.1e", ledger.Closure()) + "; imbalance " +
+         Percent(ledger.RelativeImbalance()) + " of what was delivered\n";
+}
+
+json LedgerJson(const Ledger& ledger) {
+  json out = {{"closure", ledger.Closure()}, {"relative_imbalance", ledger.RelativeImbalance()}};
+  for (const LedgerEntry& entry : kLedger) out[entry.name] = ledger.*entry.power;
+  return out;
+}
+
+json HistoryJson(const std::vector<StepRecord>& history) {
+  json list = json::array();
+  for (const StepRecord& r : history) {
+    list.push_back({{"step", r.step},
+                    {"residual", r.residual},
+                    {"seconds", r.seconds},
+                    {"rays", r.rays},
+                    {"shooters", r.shooters}});
+  }
+  return list;
+}
+
+json SettingsJson(const SolveOptions& o) {
+  return {{"edge", o.mesh.max_edge},
+          {"lmax", o.lobes.l_max},
+          {"force_lmax", o.lobes.force_l_max < 0 ? json() : json(o.lobes.force_l_max)},
+          {"lobe_error", o.lobes.error},
+          {"light_samples", o.light_samples},
+          {"delta_areas", o.delta_areas},
+          {"residual", o.residual},
+          {"step_fraction", o.step_fraction},
+          {"max_steps", o.max_steps},
+          {"max_seconds", o.max_seconds},
+          {"seed", o.seed}};
+}
+
+std::string StopText(const Solution& s) {
+  const size_t steps = s.history.empty() ? 0 : s.history.size() - 1;
+  return std::string(Name(s.stop_reason)) + ": " + Percent(s.residual()) +
+         " of the emitted power is unshot after " + Count(steps, "step") + " of reflected light";
+}
+
+json SceneJson(const Scene& scene) {
+  json cameras = json::array();
+  for (const Camera& c : scene.cameras) {
+    cameras.push_back({{"name", c.name},
+                       {"eye", ToJson(c.eye)},
+                       {"direction", ToJson(Vec3(-c.back))},
+                       {"fov_y_degrees", c.fov_y * 180 / 3.14159265f},
+                       {"aspect", c.aspect}});
+  }
+  const auto bounds = scene.Bounds();
+  return {{"faces", scene.faces.size()},
+          {"vertices", scene.positions.size()},
+          {"surfaces", scene.surface_names.size()},
+          {"emitting_faces", FindEmitters(scene).size()},
+          {"emitted_power", ToJson(EmittedPower(scene))},
+          {"bounds", bounds.isEmpty()
+                         ? json()
+                         : json{{"min", ToJson(Vec3(bounds.min()))}, {"max", ToJson(Vec3(bounds.max()))}}},
+          {"cameras", cameras},
+          {"warnings", scene.warnings}};
+}
+
+std::string SceneText(const Scene& scene) {
+  const Rgb power = EmittedPower(scene);
+  std::string text = "  " + Count(scene.faces.size(), "triangle") + " in " +
+                     Count(scene.surface_names.size(), "surface") + ", " +
+                     Count(FindEmitters(scene).size(), "emitting side") + " of " + Short(power[0]) + ", " +
+                     Short(power[1]) + ", " + Short(power[2]) + " W\n";
+  if (const auto bounds = scene.Bounds(); !bounds.isEmpty()) {
+    const Vec3 size = bounds.sizes();
+    text += "  " + Short(size.x()) + " x " + Short(size.y()) + " x " + Short(size.z()) + " m\n";
+  }
+  text += "  cameras: ";
+  for (const Camera& c : scene.cameras) {
+    if (&c != scene.cameras.data()) text += ", ";
+    text += "'" + c.name + "'";
+  }
+  return text + (scene.cameras.empty() ? "none\n" : "\n");
+}
+
+json MeshJson(const Solution& s) {
+  return {
+      {"nodes", s.mesh.node_count()},     {"elements", s.mesh.element_count()},
+      {"patches", s.mesh.patches.size()}, {"hidden_nodes", HiddenCount(s)},
+      {"lobe_bytes", LobeBytes(s)},       {"coefficients_per_channel", s.total.bytes() / sizeof(float) / 3}};
+}
+
+std::string MeshText(const Solution& s) {
+  return "  " + Count(s.mesh.node_count(), "node") + " (" + std::to_string(HiddenCount(s)) + " hidden), " +
+         Count(s.mesh.element_count(), "element") + " in " + std::to_string(s.mesh.patches.size()) +
+         " patch" + (s.mesh.patches.size() == 1 ? "" : "es") + "\n  lobes: " + Bytes(double(LobeBytes(s))) +
+         ", " +
+         Short(s.mesh.node_count() > 0
+                   ? double(s.total.bytes()) / sizeof(float) / 3 / double(s.mesh.node_count())
+                   : 0.0) +
+         " coefficients a channel per node on average\n";
+}
+
+}  // namespace lobe

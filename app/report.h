@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "solver/solution.h"
+
+namespace lobe {
+
+/// Words and JSON for what `solve` and `info` both say.
+
+/// A material and what its reflection costs.
+struct MaterialRow {
+  std::string name, model;
+  GlossKind kind = GlossKind::kNone;
+  int l_max_base = -1, l_max_gloss = -1;  ///< -1: no such part
+  double lobe_error = 0;                  ///< flux-weighted, fraction
+  Rgb emission = Rgb::Zero();
+};
+/// By building the lobes' tables.
+std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& options);
+/// From what was solved; a material without nodes has no degrees.
+std::vector<MaterialRow> MaterialRows(const Solution& solution);
+std::string MaterialText(const std::vector<MaterialRow>& rows);
+nlohmann::json MaterialJson(const std::vector<MaterialRow>& rows);
+
+std::string LedgerText(const Ledger& ledger);
+nlohmann::json LedgerJson(const Ledger& ledger);
+
+nlohmann::json HistoryJson(const std::vector<StepRecord>& history);
+nlohmann::json SettingsJson(const SolveOptions& options);
+
+/// "converged: 0.08 % of the emitted power is unshot after 9 steps".
+std::string StopText(const Solution& solution);
+
+/// Faces, emitters and such.
+nlohmann::json SceneJson(const Scene& scene);
+std::string SceneText(const Scene& scene);
+
+/// Nodes, elements and memory.
+nlohmann::json MeshJson(const Solution& solution);
+std::string MeshText(const Solution& solution);
+
+nlohmann::json ToJson(const Rgb& colour);
+nlohmann::json ToJson(const Vec3& vector);
+
+}  // namespace lobe

@@ -1,0 +1,162 @@
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/lobe_flags.h"
+#include "app/progress.h"
+#include "app/report.h"
+#include "app/values.h"
+#include "scene/glb_writer.h"
+#include "scene/gltf_scene.h"
+#include "scene/input_error.h"
+#include "solver/solver.h"
+
+namespace lobe {
+namespace {
+
+struct SolveFlags {
+  std::string scene, output;
+  SolveOptions options;
+  LobeFlags lobes;
+};
+
+void Validate(SolveFlags& flags) {
+  flags.options.lobes = flags.lobes.Options();
+  if (const std::string wrong = flags.options.Validate(); !wrong.empty()) throw UsageError(wrong);
+  RequireExtension("-o", flags.output, {".glb", ".gltf"});
+  std::error_code none;
+  if (std::filesystem::equivalent(flags.scene, flags.output, none)) {
+    throw UsageError("-o: " + flags.output + " is the scene itself; another name is expected");
+  }
+}
+
+Scene ReadScene(const std::string& path) {
+  if (IsSolution(path)) throw InputError(path + ": is a solution already; `lobe solve` expects a scene");
+  return ReadGltfScene(path);
+}
+
+void ShowProgress(const Progress& p, double target, ProgressDisplay* display) {
+  const double done = p.residual < 1 ? std::log(p.residual) / std::log(target) : 0.0;
+  const std::string phase = p.step == 0 ? "light from the lamps" : "step " + std::to_string(p.step);
+  display->Show(done, phase + Format(" (%.0f %%)", 100 * p.fraction_of_step) +
+                          Format(", unshot %.3g %%", 100 * p.residual) + ", " + Count(p.nodes, "node") +
+                          Format(", %.3g million rays", double(p.rays) * 1e-6) +
+                          Format(", %.1f s", p.seconds));
+}
+
+nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_seconds,
+                         const std::string& output) {
+  nlohmann::json out = MeshJson(s);
+  out["materials"] = MaterialJson(MaterialRows(s));
+  out["ledger"] = LedgerJson(s.ledger);
+  out["history"] = HistoryJson(s.history);
+  out["settings"] = SettingsJson(s.options);
+  out["stop_reason"] = Name(s.stop_reason);
+  out["residual"] = s.residual();
+  out["solve_seconds"] = s.solve_seconds;
+  out["cpu_seconds"] = cpu_seconds;
+  out["time_split"] = {{"cutting", split.cutting},
+                       {"rays", split.rays},
+                       {"accumulation", split.accumulation},
+                       {"lobe_reads", split.lobe_reads},
+                       {"lobe_writes", split.lobe_writes}};
+  out["warnings"] = s.scene.warnings;
+  out["output"] = output;
+  return out;
+}
+
+ExitCode RunSolve(SolveFlags flags, Console& console) {
+  Validate(flags);
+  // Asked before anything is computed, so that nothing is computed in vain.
+  CheckWritable(flags.output);
+  const std::atomic<bool>* interrupted = CatchInterrupts();
+
+  Scene scene = ReadScene(flags.scene);
+  for (const std::string& warning : scene.warnings) console.Warn(warning);
+  console.Say(flags.scene + "\n" + SceneText(scene));
+
+  TimeSplit split;
+  const std::clock_t cpu_start = std::clock();
+  const Solution solution = [&] {
+    ProgressDisplay display(console);
+    SolveControl control;
+    control.stop = interrupted;
+    control.time_split = &split;
+    control.progress = [&](const Progress& p) { ShowProgress(p, flags.options.residual, &display); };
+    return Solve(std::move(scene), flags.options, control);
+  }();
+  const double cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+
+  WriteSolution(solution, flags.output);
+
+  console.Say(MaterialText(MaterialRows(solution)));
+  console.Say(LedgerText(solution.ledger));
+  console.Say(MeshText(solution));
+  console.Say(StopText(solution) + Format("; %.2f s", solution.solve_seconds) +
+              Format(" (%.2f CPU s)", cpu_seconds));
+  console.Say("wrote " + flags.output);
+  if (console.json()) console.Result("", SolveJson(solution, split, cpu_seconds, flags.output));
+
+  if (solution.stop_reason == StopReason::kConverged) return kDone;
+  PrintError("stopped early, " + StopText(solution) + "; the solution was saved as " + flags.output);
+  return kStoppedEarly;
+}
+
+}  // namespace
+
+void AddSolveCommand(CLI::App& app, Command* command) {
+  auto flags = std::make_shared<SolveFlags>();
+  CLI::App* solve = app.add_subcommand("solve", "Solve a scene: fill every node's lobe");
+  solve->footer(
+      "Reads a glTF 2.0 scene (.glb or .gltf), cuts its surfaces into elements, and lets light bounce until\n"
+      "less than --residual of the emitted power is left. Lengths are in metres; a glTF emissive strength of "
+      "1\n"
+      "is a radiance of 1 W/(m2 sr). An interrupt (Ctrl-C) or a limit saves what there is and exits with 3.\n"
+      "\n"
+      "Examples:\n"
+      "  lobe solve scene.glb -o solution.glb\n"
+      "  lobe solve scene.glb -o fine.glb --edge 0.1 --light-samples 256 --max-seconds 600");
+  solve->add_option("SCENE", flags->scene, "glTF scene, .glb or .gltf")->type_name("")->required();
+  solve->add_option("-o,--output", flags->output, "Solution to write, .glb or .gltf")
+      ->type_name("FILE")
+      ->required();
+  SolveOptions& o = flags->options;
+  solve->add_option("--edge", o.mesh.max_edge, "Longest edge of an element, metres")
+      ->type_name("M")
+      ->capture_default_str();
+  flags->lobes.AddTo(solve);
+  solve->add_option("--light-samples", o.light_samples, "Shadow rays per node over all lamps together")
+      ->type_name("N")
+      ->capture_default_str();
+  solve
+      ->add_option("--delta-areas", o.delta_areas,
+                   "Delta areas (one shadow ray each) per node and step of reflected light")
+      ->type_name("N")
+      ->capture_default_str();
+  solve
+      ->add_option("--residual", o.residual,
+                   "Stop when unshot over emitted power is below this, between 0 and 1")
+      ->type_name("R")
+      ->capture_default_str();
+  solve
+      ->add_option("--step-fraction", o.step_fraction,
+                   "Share of the unshot power that a step shoots, above 0 to 1")
+      ->type_name("F")
+      ->capture_default_str();
+  solve->add_option("--max-steps", o.max_steps, "Stop after so many steps of reflected light")
+      ->type_name("N")
+      ->capture_default_str();
+  solve->add_option("--max-seconds", o.max_seconds, "Stop after so many seconds; 0: no limit")
+      ->type_name("S")
+      ->capture_default_str();
+  solve->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same bits")
+      ->type_name("N")
+      ->capture_default_str();
+  solve->callback(
+      [flags, command] { *command = [flags](Console& console) { return RunSolve(*flags, console); }; });
+}
+
+}  // namespace lobe

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace lobe {
+
+/// Values of flags that are more than one number. All throw UsageError naming the flag and what was given.
+
+struct PictureSize {
+  int width = 0, height = 0;
+};
+/// "640x480".
+PictureSize ParseSize(const std::string& flag, const std::string& text);
+/// 512 pixels high, as wide as the camera's aspect asks for.
+PictureSize DefaultSize(const Camera& camera);
+
+/// "1,2.5,-3", finite.
+Vec3 ParseVector(const std::string& flag, const std::string& text);
+
+struct PixelPosition {
+  int x = 0, y = 0;
+};
+/// "17,3", from the top left, 0,0.
+PixelPosition ParsePixel(const std::string& flag, const std::string& text);
+
+/// The name's ending, small letters, dot included: ".exr".
+std::string Extension(const std::string& path);
+/// Output files must end in one of `endings`: what is written follows from it.
+void RequireExtension(const std::string& flag, const std::string& path,
+                      std::initializer_list<const char*> endings);
+
+}  // namespace lobe

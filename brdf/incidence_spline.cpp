@@ -1,0 +1,56 @@
+#include "brdf/incidence_spline.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/LU>
+
+namespace lobe {
+
+IncidenceSpline::IncidenceSpline(int knots) : knots_(knots) {
+  if (knots < 5) {
+    throw std::invalid_argument("IncidenceSpline: " + std::to_string(knots) + " knots given, at least 5 expected");
+  }
+  const int n = knots_;
+  for (const bool odd : {false, true}) {
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n + 1, n + 1);
+    for (int j = 0; j < n; ++j) {
+      // (c_{j-1} + 4 c_j + c_{j+1}) / 6 = value_j, with c_{-1} = +-c_1.
+      if (j > 0) a(j, j - 1) += 1.0 / 6.0;
+      a(j, j) += 4.0 / 6.0;
+      a(j, j + 1) += 1.0 / 6.0;
+      if (j == 0) a(0, 1) += (odd ? -1.0 : 1.0) / 6.0;
+    }
+    // Equal third differences on the last two intervals.
+    const double not_a_knot[5] = {1, -4, 6, -4, 1};
+    for (int k = 0; k < 5; ++k) a(n, n - 4 + k) = not_a_knot[k];
+    (odd ? solve_odd_ : solve_even_) = a.inverse().leftCols(n);
+  }
+}
+
+IncidenceSpline::Stencil IncidenceSpline::At(float cos_theta) const {
+  const float c = std::clamp(cos_theta, 0.0f, 1.0f);
+  const float t = std::sqrt(std::max(0.0f, 1.0f - std::sqrt(c)));
+  const float s = t * float(knots_ - 1);
+  const int i = std::clamp(int(s), 0, knots_ - 2);
+  const float u = s - float(i), v = 1.0f - u;
+  Stencil out;
+  out.mirrored = i == 0;
+  out.bin[0] = i == 0 ? 1 : i - 1;
+  for (int k = 1; k < 4; ++k) out.bin[k] = i - 1 + k;
+  out.weight[0] = v * v * v * (1.0f / 6.0f);
+  out.weight[1] = (3.0f * u * u * u - 6.0f * u * u + 4.0f) * (1.0f / 6.0f);
+  out.weight[2] = (3.0f * v * v * v - 6.0f * v * v + 4.0f) * (1.0f / 6.0f);
+  out.weight[3] = u * u * u * (1.0f / 6.0f);
+  return out;
+}
+
+Eigen::MatrixXd IncidenceSpline::ControlValues(const Eigen::MatrixXd& values, bool odd) const {
+  if (values.rows() != knots_) throw std::invalid_argument("IncidenceSpline: one row per knot expected");
+  Eigen::MatrixXd with_parity = values;
+  if (odd) with_parity.row(0).setZero();   // exact where quadrature left rounding
+  return (odd ? solve_odd_ : solve_even_) * with_parity;
+}
+
+}  // namespace lobe

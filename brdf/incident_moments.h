@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "brdf/material_lobes.h"
+
+namespace lobe {
+
+/// Accumulates light arriving at one point and turns it into the light leaving.
+///
+/// The outgoing coefficients are linear in (spline weight of theta_i) x (cos, sin of m phi_i). So
+/// arriving light is summed first over that small product space, bins x (2 l_max + 1) x channels,
+/// and multiplied by the material's table once, at the end. One contribution costs
+/// 4 (2 l_max + 1) multiply-adds a channel instead of 2 (l_max+1)(l_max+2) or so, whatever the
+/// number of knots, and base and gloss share it.
+class IncidentMoments {
+ public:
+  IncidentMoments() = default;
+  /// Prepares for a material and clears. Buffers are kept from use to use.
+  void Start(const MaterialLobes& material);
+
+  /// `irradiance` (W m^-2, cosine included) arriving from `wi_local`, unit, above the horizon.
+  void Add(const Vec3& wi_local, const Rgb& irradiance);
+
+  /// Adds the outgoing lobes: base[c * base.count() + k], gloss[c * gloss.count() + k].
+  void Finish(float* base, float* gloss);
+
+ private:
+  void FinishPart(const PartLobes& part, const Rgb& rest, float* out);
+
+  const MaterialLobes* material_ = nullptr;
+  int l_max_ = -1, stride_ = 0;
+  int first_bin_ = 0, last_bin_ = -1;   // those touched since Start
+  std::vector<float> moments_;          // [bin][channel][cos 0..l_max, sin 0..l_max]
+  Rgb rest_base_, rest_gloss_;          // irradiance x what the spline's flux lacks
+  std::vector<float> azimuth_, product_;
+};
+
+}  // namespace lobe

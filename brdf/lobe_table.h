@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "brdf/hemisphere_integral.h"
+#include "brdf/incidence_spline.h"
+
+namespace lobe {
+
+/// A scalar reflectance f(wi, wo) in sr^-1, local frame, without the cosine.
+using ScalarBrdf = std::function<double(const Vec3d& wi, const Vec3d& wo)>;
+
+/// f projected into lobes: for each incident angle the cos-weighted least-squares fit of f over wo
+/// (docs/conventions.md#projection). Isotropy leaves only cos(m phi) terms at incident azimuth 0.
+///
+/// Kept over Zernike polynomials, in which a lower degree is a prefix and the flux is one number, so
+/// one table at a high degree answers "what would l_max cost" for every degree at once.
+struct ScalarTable {
+  int l_max = 0;
+  int knots = 0;
+  /// Row (n, m) at index RowIndex(n, m), m >= 0 only; column per knot.
+  Eigen::MatrixXd zernike;
+  /// Squared cos-weighted norm of f(theta_i; .) at the knots, integral of f^2 cos.
+  Eigen::VectorXd norm2;
+  /// Directional albedo on a fine grid: kFine + 1 equal steps in the spline's parameter t.
+  static constexpr int kFine = 256;
+  Eigen::VectorXd albedo;
+
+  static int RowCount(int l_max) { return (l_max / 2 + 1) * ((l_max + 1) / 2 + 1); }
+  static int RowIndex(int n, int m);   ///< n - m even, 0 <= m <= n
+
+  /// Flux-weighted relative L2 error of cutting at degree `l`: for each theta_i
+  /// ||f - f^|| / ||f|| (cos-weighted over wo), averaged with weight albedo cos sin.
+  double Error(int l) const;
+
+  /// The same for a sum of this table and others: error of cutting this one at `l`, relative to `whole`
+  /// (equal knots), of which it is part.
+  double ErrorWithin(const ScalarTable& whole, int l) const;
+
+  /// Builds at degree l_max with `knots` knots (0: DefaultKnots). `rule.width` must suit f.
+  static ScalarTable Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots = 0);
+  /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
+  static int DefaultKnots(int l_max) { return 16 + l_max; }
+
+  /// Linear combination, over equal knots; the lower degree wins. Norms cannot be added: norm2 is empty.
+  static ScalarTable Combine(double a, const ScalarTable& f, double b, const ScalarTable& g);
+};
+
+}  // namespace lobe

@@ -1,0 +1,240 @@
+#include "brdf/material_lobes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "sh/lobe.h"
+#include "sh/zernike.h"
+
+namespace lobe {
+namespace {
+
+// The base under a coat is smooth: this degree leaves less than kBaseError of it out (docs/validation.md#base).
+constexpr int kBaseDegreeCap = 8;
+constexpr double kBaseError = 0.01;
+
+double Pow5(double x) { return x * x * x * x * x; }
+
+double HalfCosine(const Vec3d& wi, const Vec3d& wo) {
+  return std::sqrt(std::max(0.0, 0.5 * (1.0 + wi.dot(wo))));
+}
+
+std::string Key(const char* model, double parameter, int l_max, int knots) {
+  std::ostringstream key;
+  key.precision(9);
+  key << model << ' ' << parameter << ' ' << l_max << ' ' << knots;
+  return key.str();
+}
+
+// Value of each fine-grid sample of the spline's flux for one channel.
+std::vector<float> FluxRest(const IncidenceSpline& spline, const Eigen::VectorXd& flux_at_knots,
+                            const Eigen::VectorXd& albedo) {
+  const Eigen::MatrixXd control = spline.ControlValues(flux_at_knots, /*odd=*/false);
+  std::vector<float> rest(albedo.size());
+  for (int i = 0; i < albedo.size(); ++i) {
+    const auto stencil = spline.At(float(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine)));
+    double flux = 0;
+    for (int k = 0; k < 4; ++k) flux += double(stencil.weight[k]) * control(stencil.bin[k], 0);
+    rest[i] = float(albedo[i] - flux);
+  }
+  return rest;
+}
+
+// One channel of a part from its table, which is read up to part.l_max.
+void SetChannel(PartLobes& part, int channel, const IncidenceSpline& spline, const ScalarTable& table) {
+  const int l_max = part.l_max;
+  const ZernikeTransform transform(l_max);
+  auto& control = part.control[channel];
+  control.assign(size_t(spline.bins()) * part.RowCount(), 0.0f);
+  for (int m = 0; m <= l_max; ++m) {
+    const int size = (l_max - m) / 2 + 1;
+    Eigen::MatrixXd values(spline.knots(), size);
+    for (int n = 0; n < size; ++n) {
+      values.col(n) = table.zernike.row(ScalarTable::RowIndex(m + 2 * n, m)).transpose();
+    }
+    const Eigen::MatrixXd bins =
+        spline.ControlValues(values * transform.ToHemisphereBlock(m).transpose(), m % 2 == 1);
+    for (int l = 0; l < size; ++l) {
+      for (int bin = 0; bin < spline.bins(); ++bin) {
+        control[size_t(bin) * part.RowCount() + part.Row(m + 2 * l, m)] = float(bins(bin, l));
+      }
+    }
+  }
+  const Eigen::VectorXd flux = std::sqrt(std::numbers::pi) * table.zernike.row(0).transpose();
+  part.flux_rest[channel] = FluxRest(spline, flux, table.albedo);
+  part.albedo[channel].resize(table.albedo.size());
+  for (int i = 0; i < table.albedo.size(); ++i) part.albedo[channel][i] = float(table.albedo[i]);
+}
+
+Rgb LambertPart(PartLobes& part, const Rgb& albedo) {
+  part.l_max = 0;
+  part.error = 0;
+  for (int c = 0; c < 3; ++c) {
+    part.control[c].clear();
+    part.albedo[c].assign(ScalarTable::kFine + 1, albedo[c]);
+    part.flux_rest[c].assign(ScalarTable::kFine + 1, 0.0f);
+  }
+  return albedo;
+}
+
+// A Lambertian part next to a glossy one goes through the same spline; its lobe is albedo / pi.
+void SplineOfLambert(PartLobes& part, const IncidenceSpline& spline) {
+  if (part.l_max != 0) return;
+  for (int c = 0; c < 3; ++c) {
+    const float coefficient = part.albedo[c][0] / float(std::numbers::pi) * std::sqrt(2.0f * float(std::numbers::pi));
+    part.control[c].assign(spline.bins(), coefficient);
+  }
+}
+
+int DegreeWithin(const ScalarTable& table, const LobeOptions& options) {
+  if (options.force_l_max >= 0) return options.force_l_max;
+  int l = 0;
+  while (l < options.l_max && table.Error(l) > options.error) ++l;
+  return l;
+}
+
+}  // namespace
+
+const char* Name(GlossKind kind) {
+  switch (kind) {
+    case GlossKind::kNone: return "none";
+    case GlossKind::kLobe: return "lobe";
+    case GlossKind::kSharp: return "sharp";
+    case GlossKind::kMirror: return "mirror";
+  }
+  return "";
+}
+
+std::shared_ptr<const ScalarTable> TableCache::Get(const std::string& key,
+                                                   const std::function<ScalarTable()>& build) {
+  auto& table = tables_[key];
+  if (!table) table = std::make_shared<ScalarTable>(build());
+  return table;
+}
+
+Rgb PartLobes::Albedo(float cos_theta_i) const {
+  if (l_max < 0) return Rgb::Zero();
+  const float t = std::sqrt(std::max(0.0f, 1.0f - std::sqrt(std::clamp(cos_theta_i, 0.0f, 1.0f))));
+  const float s = t * ScalarTable::kFine;
+  const int i = std::min(int(s), ScalarTable::kFine - 1);
+  const float u = s - float(i);
+  Rgb out;
+  for (int c = 0; c < 3; ++c) out[c] = (1 - u) * albedo[c][i] + u * albedo[c][i + 1];
+  return out;
+}
+
+MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& options, TableCache& cache)
+    : reflectance_(reflectance) {
+  const int cap = options.force_l_max >= 0 ? options.force_l_max : options.l_max;
+  const int base_cap = std::min(kBaseDegreeCap, options.force_l_max >= 0 ? kBaseDegreeCap : cap);
+  const int knots = ScalarTable::DefaultKnots(std::max(cap, kBaseDegreeCap));
+  spline_ = std::make_shared<IncidenceSpline>(knots);
+
+  // The gloss from one table, each channel times a colour.
+  const auto gloss_from = [&](const char* model, double parameter, double width, const ScalarBrdf& f,
+                              const Rgb& colour) {
+    if ((colour <= 0).all()) return;
+    const auto table = cache.Get(Key(model, parameter, cap, knots), [&] {
+      return ScalarTable::Build(f, cap, HalfVectorRule{.width = width}, knots);
+    });
+    gloss.l_max = DegreeWithin(*table, options);
+    gloss.error = table->Error(gloss.l_max);
+    for (int c = 0; c < 3; ++c) {
+      SetChannel(gloss, c, *spline_, ScalarTable::Combine(colour[c], *table, 0.0, *table));
+    }
+    kind_ = gloss.error <= options.error || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
+  };
+
+  if (const auto* lambert = std::get_if<Lambert>(&reflectance)) {
+    diffuse_albedo_ = LambertPart(base, lambert->albedo);
+  } else if (const auto* phong = std::get_if<Phong>(&reflectance)) {
+    const Reflectance white = Phong{Rgb::Constant(1), phong->exponent};
+    gloss_from("phong", phong->exponent, std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
+               [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
+               phong->albedo);
+  } else if (const auto* ward = std::get_if<Ward>(&reflectance)) {
+    const Reflectance white = Ward{Rgb::Constant(1), ward->alpha};
+    gloss_from("ward", ward->alpha, std::min(1.0f, ward->alpha),
+               [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
+               ward->albedo);
+  } else if (const auto* gltf = std::get_if<MetallicRoughness>(&reflectance)) {
+    const Rgb f0 = gltf->F0();
+    const float f90 = gltf->F90();
+    const bool coated = (f0 > 0).any() || f90 > 0;
+
+    // Base: c_diff / pi (1 - F), F = f0 + (f90 - f0)(1 - V.H)^5 (of the largest channel with
+    // KHR_materials_specular). A constant and one universal table.
+    const Rgb diffuse = gltf->DiffuseColor();
+    const Rgb f0_base = gltf->has_specular ? Rgb::Constant(f0.maxCoeff()) : f0;
+    const Rgb constant = diffuse * (1 - f0_base), slope = diffuse * (f90 - f0_base);
+    if ((slope.abs() < 1e-7f).all()) {
+      if ((diffuse > 0).any() || !coated) diffuse_albedo_ = LambertPart(base, constant);
+    } else if ((diffuse > 0).any()) {
+      const HalfVectorRule rule{.width = 1.0};
+      const auto fresnel = cache.Get(Key("fresnel", 0, kBaseDegreeCap, knots), [&] {
+        return ScalarTable::Build(
+            [](const Vec3d& wi, const Vec3d& wo) {
+              return Pow5(1.0 - HalfCosine(wi, wo)) / std::numbers::pi;
+            },
+            kBaseDegreeCap, rule, knots);
+      });
+      const auto one = cache.Get(Key("lambert", 0, kBaseDegreeCap, knots), [&] {
+        return ScalarTable::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
+                                  kBaseDegreeCap, rule, knots);
+      });
+      // Only the Fresnel part is cut; the steepest channel decides.
+      int steepest = 0;
+      (slope / constant.max(1e-6f)).maxCoeff(&steepest);
+      const auto whole = ScalarTable::Combine(constant[steepest], *one, -slope[steepest], *fresnel);
+      const auto error = [&](int l) { return slope[steepest] * fresnel->ErrorWithin(whole, l); };
+      base.l_max = 0;
+      while (base.l_max < base_cap && error(base.l_max) > kBaseError) ++base.l_max;
+      base.error = error(base.l_max);
+      for (int c = 0; c < 3; ++c) {
+        SetChannel(base, c, *spline_, ScalarTable::Combine(constant[c], *one, -slope[c], *fresnel));
+      }
+    }
+
+    if (coated && gltf->roughness < kMirrorRoughness) {
+      kind_ = GlossKind::kMirror;
+    } else if (coated) {
+      const double alpha = double(gltf->roughness) * gltf->roughness;
+      const auto dv = [alpha](const Vec3d& wi, const Vec3d& wo) {
+        const Vec3d h = (wi + wo).normalized();
+        return GgxD(h.z(), alpha) * GgxV(wi.z(), wo.z(), alpha);
+      };
+      const HalfVectorRule rule{.width = alpha};
+      const auto unit = cache.Get(Key("ggx", gltf->roughness, cap, knots),
+                                  [&] { return ScalarTable::Build(dv, cap, rule, knots); });
+      const auto grazing = cache.Get(Key("ggx fresnel", gltf->roughness, cap, knots), [&] {
+        return ScalarTable::Build(
+            [&](const Vec3d& wi, const Vec3d& wo) { return dv(wi, wo) * Pow5(1.0 - HalfCosine(wi, wo)); },
+            cap, rule, knots);
+      });
+      gloss.l_max = DegreeWithin(*unit, options);
+      gloss.error = unit->Error(gloss.l_max);
+      for (int c = 0; c < 3; ++c) {
+        SetChannel(gloss, c, *spline_, ScalarTable::Combine(f0[c], *unit, f90 - f0[c], *grazing));
+      }
+      kind_ = gloss.error <= options.error || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
+    }
+  }
+  const bool lambertian_base = base.l_max < 0 || base.control[0].empty();
+  diffuse_ = gloss.l_max < 0 && lambertian_base;
+  if (!diffuse_ && lambertian_base) SplineOfLambert(base, *spline_);
+}
+
+Rgb MaterialLobes::Albedo(float cos_theta_i) const {
+  if (diffuse()) return diffuse_albedo_;
+  return base.Albedo(cos_theta_i) + gloss.Albedo(cos_theta_i);
+}
+
+Rgb MaterialLobes::MirrorAlbedo(float cos_theta_i) const {
+  const auto* gltf = std::get_if<MetallicRoughness>(&reflectance_);
+  if (kind_ != GlossKind::kMirror || !gltf) return Rgb::Zero();
+  return gltf->Fresnel(cos_theta_i);
+}
+
+}  // namespace lobe

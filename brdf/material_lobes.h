@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "brdf/incidence_spline.h"
+#include "brdf/lobe_table.h"
+#include "brdf/reflectance.h"
+
+namespace lobe {
+
+/// What a material's gloss costs (DESIGN 3). Base, the diffuse part under it, is apart.
+enum class GlossKind {
+  kNone,    ///< diffuse: one coefficient
+  kLobe,    ///< within tolerance under the cap
+  kSharp,   ///< beyond it: a capped lobe whose energy is right carries light onwards
+  kMirror,  ///< no lobe, only recursion
+};
+const char* Name(GlossKind kind);
+
+struct LobeOptions {
+  /// Cap on the degree of a lobe, inclusive, 0..32. Memory and time per glossy node grow as
+  /// (l_max+1)(l_max+2)/2. Default measured in docs/validation.md#degree.
+  int l_max = 16;
+  /// Flux-weighted error (0.2 = 20 %) a lobe may have; the smallest degree within it is taken.
+  /// Default measured in docs/validation.md#degree.
+  double error = 0.20;
+  /// Gives every gloss part exactly this degree; -1: choose by error.
+  int force_l_max = -1;
+};
+
+/// One part (base or gloss) of a material as lobes, three channels.
+struct PartLobes {
+  int l_max = -1;                        ///< -1: the part is black
+  /// Flux-weighted error of the degree taken, 0 when exact.
+  double error = 0;
+  /// Control values over the incidence spline, control[c][bin * RowCount() + Row(l, m)], m >= 0: the H_lm
+  /// coefficients of the light leaving for irradiance 1 at incident azimuth 0.
+  std::array<std::vector<float>, 3> control;
+  /// On ScalarTable's fine grid of t: directional albedo, and what the spline's flux lacks of it. The
+  /// rest is added as a constant lobe, so that the flux is right between knots too.
+  std::array<std::vector<float>, 3> albedo, flux_rest;
+
+  int count() const { return l_max < 0 ? 0 : (l_max + 1) * (l_max + 2) / 2; }
+  bool constant() const { return l_max == 0; }
+  int RowCount() const { return (l_max / 2 + 1) * ((l_max + 1) / 2 + 1); }
+  /// Rows run over m for each step (l - m) / 2, so that loops over them vectorise over m.
+  int Row(int l, int m) const {
+    const int step = (l - m) / 2;
+    return step * (l_max + 2 - step) + m;
+  }
+  Rgb Albedo(float cos_theta_i) const;
+};
+
+/// Scalar tables by model and parameter, shared by the materials of one scene.
+class TableCache {
+ public:
+  std::shared_ptr<const ScalarTable> Get(const std::string& key, const std::function<ScalarTable()>& build);
+
+ private:
+  std::map<std::string, std::shared_ptr<const ScalarTable>> tables_;
+};
+
+/// Everything transport needs to know of a material's reflection.
+class MaterialLobes {
+ public:
+  MaterialLobes(const Reflectance& reflectance, const LobeOptions& options, TableCache& cache);
+
+  GlossKind kind() const { return kind_; }
+  /// Base and gloss are Lambertian or black: nodes hold one coefficient and never meet a lobe routine.
+  bool diffuse() const { return diffuse_; }
+  const IncidenceSpline& spline() const { return *spline_; }   ///< common to both parts; not for diffuse()
+  int max_degree() const { return std::max(base.l_max, gloss.l_max); }
+
+  /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it.
+  Rgb Albedo(float cos_theta_i) const;
+  /// Fraction reflected by the ideal mirror coat; 0 unless kind() is kMirror.
+  Rgb MirrorAlbedo(float cos_theta_i) const;
+  Rgb DiffuseAlbedo() const { return diffuse_albedo_; }       ///< for diffuse() materials
+
+  PartLobes base, gloss;
+
+ private:
+  GlossKind kind_ = GlossKind::kNone;
+  Reflectance reflectance_;
+  bool diffuse_ = true;
+  Rgb diffuse_albedo_ = Rgb::Zero();
+  std::shared_ptr<const IncidenceSpline> spline_;
+};
+
+}  // namespace lobe

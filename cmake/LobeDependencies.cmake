@@ -1,0 +1,20 @@
+# Everything Lobe stands on, by find_package; versions are Debian 12's.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(embree 3.13 REQUIRED)
+find_package(OpenMesh REQUIRED)
+find_package(OpenEXR 3.1 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(TinyGLTF REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(PNG REQUIRED)
+if(LOBE_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(Boost 1.74 REQUIRED)  # Boost.Math: an independent spherical harmonic for the tests
+endif()
+
+find_program(LOBE_CCACHE ccache)
+if(LOBE_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${LOBE_CCACHE})
+endif()

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Installs what Lobe needs on Debian 12 (or a relative) and is not there yet. Asks apt nothing when nothing is
+# missing. Arguments: further things wanted, "validator" for the glTF validator's node and npm.
+set -euo pipefail
+
+packages=(git cmake ninja-build g++ ccache
+          libeigen3-dev libembree-dev libopenmesh-dev libopenexr-dev libtbb-dev libtinygltf-dev libcli11-dev
+          nlohmann-json3-dev libpng-dev libgtest-dev libboost-dev)
+
+installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  echo "Not a Debian system: please see to the equivalents of: ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  installed "$package" || missing+=("$package")
+done
+for want in "$@"; do
+  case "$want" in
+    validator)
+      # By command, not by package: node often comes from elsewhere, and brings its own npm.
+      command -v node >/dev/null || missing+=(nodejs)
+      command -v npm >/dev/null || missing+=(npm ca-certificates)
+      ;;
+    *)
+      echo "install-dependencies.sh: unknown argument '$want', expected 'validator'" >&2
+      exit 2
+      ;;
+  esac
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "Please install, as root: ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "Installing ${missing[*]}" >&2
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+"${apt[@]}" update
+"${apt[@]}" install --no-install-recommends "${missing[@]}"

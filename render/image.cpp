@@ -1,0 +1,16 @@
+#include "render/image.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lobe {
+
+unsigned char ToSrgb8(float linear, float exposure) {
+  const float v = linear * std::exp2(exposure);
+  if (!(v > 0)) return 0;  // negative and NaN show as black
+  if (v >= 1) return 255;
+  const float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+  return static_cast<unsigned char>(std::lround(255 * encoded));
+}
+
+}  // namespace lobe

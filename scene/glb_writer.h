@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace lobe {
+
+/// Builds a .glb: a JSON document and one binary buffer.
+class GlbWriter {
+ public:
+  nlohmann::json document;   ///< accessors, bufferViews, buffers are filled by the calls below
+
+  GlbWriter();
+
+  enum class Target { kNone = 0, kVertices = 34962, kIndices = 34963 };
+  /// Appends an accessor and returns its index. `type`: "SCALAR", "VEC3", … VEC3 positions get min and
+  /// max when `bounds`.
+  int AddFloats(std::span<const float> values, const std::string& type, Target target, bool bounds = false);
+  int AddUints(std::span<const uint32_t> values, Target target);
+  int AddBytes(std::span<const uint8_t> values);
+
+  /// Writes to a temporary name beside `path`, flushes to disk, renames: `path` is absent, what it was,
+  /// or complete, whatever happens. A name ending in .gltf gets a .bin beside it (needed above 4 GiB).
+  /// Throws InputError (unwritable, a directory, disk full).
+  void Write(const std::string& path);
+
+ private:
+  int AddView(const void* data, size_t bytes, Target target);
+  std::vector<uint8_t> buffer_;
+};
+
+/// Writes `bytes` to `path` by a temporary file, flush and rename. Throws InputError.
+void WriteFileAtomically(const std::string& path, std::span<const uint8_t> bytes);
+
+/// Throws InputError if `path` could not be written: its folder missing or read-only, or a directory by
+/// that name. Asked before long work, so that nothing is computed in vain. `what` names the flag.
+void CheckWritable(const std::string& path);
+
+}  // namespace lobe

@@ -1,0 +1,102 @@
+#include "scene/gltf_nodes.h"
+#include "scene/gltf_scene.h"
+
+namespace lobe {
+
+namespace {
+
+/// Ours: a model that glTF does not have, in place of metallic-roughness (docs/format.md).
+constexpr const char* kBrdfExtension = "LOBE_materials_brdf";
+
+void WarnOfTextures(const GltfJson& place, const GltfJson& material, std::vector<std::string>* warnings) {
+  for (const auto& [key, value] : place.value().items()) {
+    if (!key.ends_with("Texture")) continue;
+    const bool has_factor = key != "normalTexture" && key != "occlusionTexture";
+    warnings->push_back(material.element() + ": " + key + " is not read; " +
+                        (has_factor ? "its factor is used" : "the surface is taken without it"));
+  }
+}
+
+Reflectance ReadBrdfExtension(const GltfJson& brdf) {
+  const std::string model = brdf.String("model");
+  const Rgb albedo = brdf.Color("albedo", Rgb::Constant(0.5f), 0, 1);
+  if (model == "lambert") return Lambert{albedo};
+  if (model == "phong") {
+    return Phong{albedo, static_cast<float>(brdf.Number("exponent", Phong{}.exponent, 0))};
+  }
+  if (model == "ward") {
+    // Below a thousandth the peak exceeds 1e5 / sr, and no quadrature of ours finds it.
+    return Ward{albedo, static_cast<float>(brdf.Number("alpha", Ward{}.alpha, 1e-3, 1))};
+  }
+  brdf.FailValue("model", "\"lambert\", \"phong\" or \"ward\"");
+}
+
+MetallicRoughness ReadMetallicRoughness(const GltfJson& material, std::vector<std::string>* warnings) {
+  MetallicRoughness m;
+  const GltfJson pbr = material.Object("pbrMetallicRoughness");
+  double base[4] = {1, 1, 1, 1};
+  pbr.Numbers("baseColorFactor", 4, base, 0, 1);
+  m.base_color = Eigen::Array3d(base[0], base[1], base[2]).cast<float>();
+  m.metallic = static_cast<float>(pbr.Number("metallicFactor", 1, 0, 1));
+  m.roughness = static_cast<float>(pbr.Number("roughnessFactor", 1, 0, 1));
+  WarnOfTextures(pbr, material, warnings);
+
+  // An ior of 0 stands for infinity: Fresnel reflection is complete at every angle. The formula
+  // f0 = ((ior - 1) / (ior + 1))^2 gives just that, so 0 is kept.
+  const GltfJson ior = material.Extension("KHR_materials_ior");
+  m.ior = static_cast<float>(ior.Number("ior", 1.5, 0));
+  if (m.ior != 0 && m.ior < 1) ior.FailValue("ior", "0 or at least 1");
+
+  m.has_specular = material.Object("extensions").Has("KHR_materials_specular");
+  const GltfJson specular = material.Extension("KHR_materials_specular");
+  m.specular = static_cast<float>(specular.Number("specularFactor", 1, 0, 1));
+  m.specular_color = specular.Color("specularColorFactor", Rgb::Constant(1));
+  WarnOfTextures(specular, material, warnings);
+  return m;
+}
+
+void WarnOfTheRest(const GltfJson& material, std::vector<std::string>* warnings) {
+  WarnOfTextures(material, material, warnings);
+  const std::string alpha = material.String("alphaMode", "OPAQUE");
+  if (alpha != "OPAQUE") {
+    warnings->push_back(material.element() + ": alphaMode " + alpha + " is not read; the surface is opaque");
+  }
+  const GltfJson extensions = material.Object("extensions");
+  for (const auto& [name, value] : extensions.value().items()) {
+    if (name == "KHR_materials_ior" || name == "KHR_materials_specular" ||
+        name == "KHR_materials_emissive_strength" || name == kBrdfExtension) {
+      continue;
+    }
+    const bool transmits = name.find("transmission") != std::string::npos;
+    warnings->push_back(material.element() + ": " + name + " is not read; " +
+                        (transmits ? "the surface is opaque" : "the material is taken without it"));
+  }
+}
+
+}  // namespace
+
+std::vector<Material> ReadMaterials(const GltfFile& file, std::vector<std::string>* warnings) {
+  const GltfJson document = Document(file);
+  std::vector<Material> materials;
+  for (size_t i = 0; i < document.Count("materials"); ++i) {
+    const GltfJson json = document.Entry("materials", i, "material");
+    Material material;
+    material.name = json.String("name");
+    if (material.name.empty()) material.name = "material " + std::to_string(i);
+    material.double_sided = json.Bool("doubleSided", false);
+    const Rgb factor = json.Color("emissiveFactor", Rgb::Zero());
+    const GltfJson strength = json.Extension("KHR_materials_emissive_strength");
+    material.emission = factor * static_cast<float>(strength.Number("emissiveStrength", 1, 0));
+    if (!material.emission.allFinite()) json.Fail("emissiveFactor times emissiveStrength is not finite");
+    if (json.Object("extensions").Has(kBrdfExtension)) {
+      material.reflectance = ReadBrdfExtension(json.Extension(kBrdfExtension));
+    } else {
+      material.reflectance = ReadMetallicRoughness(json, warnings);
+    }
+    WarnOfTheRest(json, warnings);
+    materials.push_back(std::move(material));
+  }
+  return materials;
+}
+
+}  // namespace lobe

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "scene/mesh.h"
+#include "scene/scene.h"
+
+namespace lobe {
+
+struct Ray {
+  Vec3 origin;
+  float t_min = 0;
+  Vec3 direction;   ///< need not be unit; t is in multiples of it
+  float t_max;
+};
+
+struct RayHit {
+  uint32_t face = kNone;   ///< kNone: nothing hit
+  float t = 0;
+  float u = 0, v = 0;      ///< barycentrics of Face::vertex[1], [2]
+  Side side = Side::kFront;
+  bool hit() const { return face != kNone; }
+};
+
+/// Visibility among the scene's input triangles. The one place that knows Embree. Const methods may
+/// run in many threads; results do not depend on how rays are grouped.
+///
+/// Faces that repeat another's three corners are one: rays meet the first with that winding, and where
+/// both windings exist each shows its front. Other faces that overlap in one plane hide each other at
+/// random (a modelling mistake), and only there may grouping show.
+class RayTracer {
+ public:
+  explicit RayTracer(const Scene& scene);
+  ~RayTracer();
+  RayTracer(RayTracer&&) noexcept;
+
+  RayHit Intersect(const Ray& ray) const;
+  bool Occluded(const Ray& ray) const;
+
+  /// Many rays at once, in packets. `coherent`: they start or go together (eye rays, rays to one lamp).
+  void Intersect(std::span<const Ray> rays, std::span<RayHit> hits, bool coherent) const;
+  void Occluded(std::span<const Ray> rays, std::span<uint8_t> occluded, bool coherent) const;
+
+  /// Distance by which ray origins are lifted off surfaces: a few rounding errors of coordinates this far
+  /// from the origin, and no more, so that contacts do not leak.
+  float epsilon() const { return epsilon_; }
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  float epsilon_;
+};
+
+}  // namespace lobe

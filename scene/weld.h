@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sh/vector.h"
+
+namespace lobe {
+
+/// Gives corners at one place, with about one normal, one number. Corners join the first to come among
+/// those within reach, so the outcome depends on their order alone.
+class Welder {
+ public:
+  /// Positions differ by at most `distance` (metres) in each axis, normals by at most `angle` (radians).
+  Welder(const Eigen::AlignedBox3f& bounds, double distance, double angle);
+
+  /// Number of the corner, counted from 0 in order of first appearance. `normal` is of unit length.
+  uint32_t Add(const Vec3& position, const Vec3& normal);
+  /// A number of its own for a corner that nothing is to join.
+  uint32_t AddAlone(const Vec3& position, const Vec3& normal);
+
+  /// By number; those of the first corner.
+  const std::vector<Vec3>& positions() const { return positions_; }
+  const std::vector<Vec3>& normals() const { return normals_; }
+
+ private:
+  Vec3d origin_;
+  double distance_, cell_, cos_angle_;
+  std::vector<Vec3> positions_, normals_;
+  std::vector<uint32_t> next_;                          // in the same grid cell
+  std::unordered_map<uint64_t, uint32_t> first_in_cell_;
+};
+
+}  // namespace lobe

@@ -1,0 +1,188 @@
+#include "solver/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+#include <tbb/parallel_for.h>
+
+#include "brdf/frame.h"
+#include "scene/input_error.h"
+#include "solver/hash.h"
+
+namespace lobe {
+namespace {
+
+constexpr int kWalksPerRound = 4096, kMaxRounds = 64, kMaxBounces = 24;
+
+Vec3 CosineDirection(float u, float v) {
+  const float r = std::sqrt(u), phi = 2.0f * std::numbers::pi_v<float> * v;
+  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u))};
+}
+
+Vec3 PointOnTriangle(const std::array<Vec3, 3>& p, float u, float v) {
+  const float s = std::sqrt(u);
+  return p[0] * (1 - s) + p[1] * (s * (1 - v)) + p[2] * (s * v);
+}
+
+Ray RayFrom(const Vec3& point, const Vec3& normal, const Vec3& direction, float epsilon) {
+  return {point + normal * epsilon, 0.0f, direction, std::numeric_limits<float>::infinity()};
+}
+
+// Faces of one surface that share positions hang together.
+std::vector<uint32_t> ConnectedPieces(const Scene& scene) {
+  std::vector<uint32_t> parent(scene.faces.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto find = [&](uint32_t f) {
+    while (parent[f] != f) f = parent[f] = parent[parent[f]];
+    return f;
+  };
+  std::map<std::tuple<uint32_t, float, float, float>, uint32_t> first;
+  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
+    for (const uint32_t v : scene.faces[f].vertex) {
+      const Vec3& p = scene.positions[v];
+      const auto [it, added] = first.try_emplace({scene.faces[f].surface, p.x(), p.y(), p.z()}, f);
+      if (!added) parent[find(f)] = find(it->second);
+    }
+  }
+  for (uint32_t f = 0; f < parent.size(); ++f) parent[f] = find(f);
+  return parent;
+}
+
+// Index of the emitter that holds `u` of the total power, u in [0, 1).
+class EmitterChoice {
+ public:
+  explicit EmitterChoice(const std::vector<Emitter>& emitters) {
+    double sum = 0;
+    for (const auto& e : emitters) cumulative_.push_back(sum += double(e.radiance.sum()) * e.area);
+  }
+  size_t At(double u) const {
+    const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), u * cumulative_.back());
+    return std::min(size_t(it - cumulative_.begin()), cumulative_.size() - 1);
+  }
+
+ private:
+  std::vector<double> cumulative_;
+};
+
+}  // namespace
+
+std::vector<Emitter> FindEmitters(const Scene& scene) {
+  std::vector<Emitter> out;
+  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
+    const Material& material = scene.material(scene.faces[f]);
+    if (!material.emits()) continue;
+    const auto p = scene.Corners(scene.faces[f]);
+    const Vec3 n = scene.GeometricNormal(scene.faces[f]);
+    const float area = scene.Area(scene.faces[f]);
+    out.push_back({f, Side::kFront, p, n, area, material.emission});
+    if (material.double_sided) out.push_back({f, Side::kBack, {p[0], p[2], p[1]}, -n, area, material.emission});
+  }
+  return out;
+}
+
+std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed) {
+  const auto emitters = FindEmitters(scene);
+  if (emitters.empty()) {
+    throw InputError(scene.path + ": no emitter found: at least one material with an emissiveFactor above 0 "
+                     "on a triangle is expected");
+  }
+  const auto piece = ConnectedPieces(scene);
+  const EmitterChoice choice(emitters);
+  std::vector<bool> lit_piece(2 * scene.faces.size(), false);   // 2 * piece + side
+  for (const auto& e : emitters) lit_piece[2 * piece[e.face] + size_t(e.side)] = true;
+
+  const auto double_sided = [&](uint32_t f) { return scene.material(scene.faces[f]).double_sided; };
+  for (int round = 0; round < kMaxRounds; ++round) {
+    // Each walk lists the sides it met; merged afterwards, so that threads share nothing.
+    std::vector<std::vector<uint32_t>> met(kWalksPerRound);
+    tbb::parallel_for(0, kWalksPerRound, [&](int walk) {
+      RandomStream random(Mix(Mix(seed, 0x11f7), uint64_t(round) * kWalksPerRound + walk));
+      const Emitter& e = emitters[choice.At((walk + random.Next()) / kWalksPerRound)];
+      Vec3 at = PointOnTriangle(e.corners, random.Next(), random.Next());
+      Vec3 normal = e.normal;
+      for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
+        const Vec3 w = Frame(normal).ToWorld(CosineDirection(random.Next(), random.Next()));
+        const RayHit hit = tracer.Intersect(RayFrom(at, normal, w, tracer.epsilon()));
+        if (!hit.hit() || (hit.side == Side::kBack && !double_sided(hit.face))) break;
+        met[walk].push_back(2 * piece[hit.face] + uint32_t(hit.side));
+        const auto p = scene.Corners(scene.faces[hit.face]);
+        at = p[0] * (1 - hit.u - hit.v) + p[1] * hit.u + p[2] * hit.v;
+        normal = scene.GeometricNormal(scene.faces[hit.face]);
+        if (hit.side == Side::kBack) normal = -normal;
+      }
+    });
+    bool anything_new = false;
+    for (const auto& sides : met) {
+      for (const uint32_t side : sides) {
+        if (!lit_piece[side]) lit_piece[side] = anything_new = true;
+      }
+    }
+    if (!anything_new) break;
+  }
+
+  std::vector<bool> lit(2 * scene.faces.size());
+  for (size_t f = 0; f < scene.faces.size(); ++f) {
+    for (int side = 0; side < 2; ++side) lit[2 * f + side] = lit_piece[2 * piece[f] + side];
+  }
+  return lit;
+}
+
+Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tracer, uint64_t seed) {
+  constexpr int kSide = 8;   // strata a side
+  static_assert(kSide * kSide == Exposure::kProbes);
+  Exposure out;
+  const size_t nodes = mesh.node_count();
+  out.hidden.assign(nodes, 0);
+  std::vector<std::vector<Exposure::LostRay>> lost(nodes);
+
+  const auto reaches_nodes = [&](const RayHit& hit) {
+    return mesh.roots[2 * hit.face + size_t(hit.side)] != kNone;
+  };
+  tbb::parallel_for(size_t(0), nodes, [&](size_t node) {
+    RandomStream random(Mix(Mix(seed, 0xe9), node));
+    const Frame frame(mesh.node_sample_normal[node]), shading(mesh.node_normal[node]);
+    Ray rays[Exposure::kProbes];
+    RayHit hits[Exposure::kProbes];
+    for (int i = 0; i < Exposure::kProbes; ++i) {
+      const Vec3 w = frame.ToWorld(CosineDirection((i / kSide + random.Next()) / kSide,
+                                                   (i % kSide + random.Next()) / kSide));
+      rays[i] = RayFrom(mesh.node_sample_position[node], frame.z, w, tracer.epsilon());
+    }
+    tracer.Intersect(rays, hits, /*coherent=*/false);
+    int blocked = 0;
+    for (int i = 0; i < Exposure::kProbes; ++i) {
+      if (hits[i].hit() && reaches_nodes(hits[i])) continue;
+      blocked += hits[i].hit();
+      lost[node].push_back({shading.ToLocal(rays[i].direction), !hits[i].hit()});
+    }
+    out.hidden[node] = 2 * blocked > Exposure::kProbes;
+  });
+  for (const auto& rays : lost) {
+    out.lost_begin.push_back(uint32_t(out.lost.size()));
+    out.lost.insert(out.lost.end(), rays.begin(), rays.end());
+  }
+  out.lost_begin.push_back(uint32_t(out.lost.size()));
+
+  const auto emitters = FindEmitters(scene);
+  const EmitterChoice choice(emitters);
+  constexpr int kEmissionProbes = 1 << 14;
+  std::vector<uint8_t> fate(kEmissionProbes);   // 1 escaped, 2 blocked
+  tbb::parallel_for(0, kEmissionProbes, [&](int i) {
+    RandomStream random(Mix(Mix(seed, 0xe317), i));
+    const Emitter& e = emitters[choice.At((i + random.Next()) / kEmissionProbes)];
+    const Vec3 w = Frame(e.normal).ToWorld(CosineDirection(random.Next(), random.Next()));
+    const Vec3 at = PointOnTriangle(e.corners, random.Next(), random.Next());
+    const RayHit hit = tracer.Intersect(RayFrom(at, e.normal, w, tracer.epsilon()));
+    fate[i] = !hit.hit() ? 1 : reaches_nodes(hit) ? 0 : 2;
+  });
+  out.emission_escaped = double(std::count(fate.begin(), fate.end(), 1)) / kEmissionProbes;
+  out.emission_blocked = double(std::count(fate.begin(), fate.end(), 2)) / kEmissionProbes;
+  out.rays = nodes * Exposure::kProbes + kEmissionProbes;
+  return out;
+}
+
+}  // namespace lobe

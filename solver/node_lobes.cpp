@@ -1,0 +1,90 @@
+#include "solver/node_lobes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "brdf/frame.h"
+#include "sh/lobe.h"
+#include "sh/simd.h"
+
+namespace lobe {
+
+NodeLobes::NodeLobes(const Mesh& mesh, const std::vector<PartDegrees>& patch_degrees)
+    : patch_degrees_(patch_degrees), node_patch_(mesh.node_patch) {
+  size_t size = 0;
+  int max_degree = 0;
+  for (size_t p = 0; p < mesh.patches.size(); ++p) {
+    const auto& patch = mesh.patches[p];
+    patch_begin_.push_back(patch.node_begin);
+    patch_offset_.push_back(size);
+    patch_stride_.push_back(size_t(3) * patch_degrees[p].count());
+    size += patch_stride_.back() * (patch.node_end - patch.node_begin);
+    max_degree = std::max(max_degree, patch_degrees[p].max_degree());
+  }
+  values_.assign(size, 0.0f);
+  zonal_flux_.resize(max_degree + 1);
+  bases_.resize(max_degree + 1);
+  for (const auto& degrees : patch_degrees) {
+    for (const int l_max : {degrees.base, degrees.gloss}) {
+      if (l_max < 0 || !zonal_flux_[l_max].empty()) continue;
+      const Eigen::VectorXd weights = FluxWeights(l_max);
+      for (int l = 0; l <= l_max; l += 2) zonal_flux_[l_max].push_back(float(weights[CoefficientIndex(l, 0)]));
+    }
+    const int l_max = degrees.max_degree();
+    if (l_max > 0 && !bases_[l_max]) bases_[l_max] = std::make_shared<HemisphereBasis<float>>(l_max);
+  }
+}
+
+std::span<float> NodeLobes::patch_values(uint32_t patch) {
+  const size_t end = patch + 1 < patch_offset_.size() ? patch_offset_[patch + 1] : values_.size();
+  return {values_.data() + patch_offset_[patch], end - patch_offset_[patch]};
+}
+
+std::span<const float> NodeLobes::patch_values(uint32_t patch) const {
+  return const_cast<NodeLobes*>(this)->patch_values(patch);
+}
+
+Rgb NodeLobes::Flux(uint32_t node) const {
+  const PartDegrees& d = degrees(node);
+  Rgb flux = Rgb::Zero();
+  const auto add = [&](const float* coefficients, int l_max, int count) {
+    if (l_max < 0) return;
+    const auto& weights = zonal_flux_[l_max];
+    for (int c = 0; c < 3; ++c) {
+      float sum = 0;
+      for (size_t i = 0; i < weights.size(); ++i) {
+        sum += weights[i] * coefficients[c * count + CoefficientIndex(2 * int(i), 0)];
+      }
+      flux[c] += sum;
+    }
+  };
+  add(base(node), d.base, d.base_count());
+  add(gloss(node), d.gloss, d.gloss_count());
+  return flux;
+}
+
+Rgb NodeLobes::Radiance(uint32_t node, const Vec3& wo_local, float* basis) const {
+  const PartDegrees& d = degrees(node);
+  if (d.diffuse()) {
+    if (d.base < 0) return Rgb::Zero();
+    const float* v = base(node);
+    return Rgb(v[0], v[1], v[2]) * (1.0f / std::sqrt(2.0f * std::numbers::pi_v<float>));
+  }
+  const Vec3 wo = BendToHorizon(wo_local);
+  bases_[d.max_degree()]->Evaluate(wo.x(), wo.y(), wo.z(), basis);
+  return RadianceFromBasis(node, basis);
+}
+
+Rgb NodeLobes::RadianceFromBasis(uint32_t node, const float* basis) const {
+  const PartDegrees& d = degrees(node);
+  Rgb out = Rgb::Zero();
+  const float *b = base(node), *g = gloss(node);
+  const int base_count = d.base_count(), gloss_count = d.gloss_count();
+  for (int c = 0; c < 3; ++c) {
+    if (base_count > 0) out[c] += Dot(b + c * base_count, basis, base_count);
+    if (gloss_count > 0) out[c] += Dot(g + c * gloss_count, basis, gloss_count);
+  }
+  return out;
+}
+
+}  // namespace lobe

@@ -1,0 +1,34 @@
+#include "solver/options.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace lobe {
+
+std::string SolveOptions::Validate() const {
+  std::ostringstream out;
+  if (!(mesh.max_edge > 0) || !std::isfinite(mesh.max_edge)) {
+    out << "longest edge " << mesh.max_edge << " m is out of range: a finite length above 0 is expected";
+  } else if (lobes.l_max < 0 || lobes.l_max > 32) {
+    out << "lmax " << lobes.l_max << " is out of range: 0 to 32 is expected";
+  } else if (lobes.force_l_max < -1 || lobes.force_l_max > 32) {
+    out << "forced lmax " << lobes.force_l_max << " is out of range: 0 to 32 is expected";
+  } else if (!(lobes.error > 0) || !(lobes.error <= 10)) {
+    out << "lobe error " << lobes.error * 100 << " % is out of range: above 0 to 1000 is expected";
+  } else if (light_samples < 1 || light_samples > 1'000'000) {
+    out << "light samples " << light_samples << " is out of range: 1 to 1000000 is expected";
+  } else if (delta_areas < 1 || delta_areas > 1'000'000) {
+    out << "delta areas " << delta_areas << " is out of range: 1 to 1000000 is expected";
+  } else if (!(residual > 0) || !(residual < 1)) {
+    out << "residual " << residual << " is out of range: between 0 and 1 is expected";
+  } else if (!(step_fraction > 0) || !(step_fraction <= 1)) {
+    out << "step fraction " << step_fraction << " is out of range: above 0 to 1 is expected";
+  } else if (max_steps < 0) {
+    out << "step limit " << max_steps << " is out of range: 0 or more is expected";
+  } else if (!(max_seconds >= 0)) {
+    out << "time limit " << max_seconds << " s is out of range: 0 or more is expected";
+  }
+  return out.str();
+}
+
+}  // namespace lobe

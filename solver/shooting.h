@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "brdf/incident_moments.h"
+#include "brdf/material_lobes.h"
+#include "scene/ray_tracer.h"
+#include "solver/exposure.h"
+#include "solver/form_factor.h"
+#include "solver/hash.h"
+#include "solver/node_lobes.h"
+#include "solver/solution.h"
+
+namespace lobe {
+
+/// Light on the move: what one step shoots. Either the emitters' own radiance, or lobes of nodes. Cut into
+/// cells, triangles that halve by bisection: an emitter is one cell, a lit face of the mesh the root of its
+/// bisection tree, and below an element (or an emitter) cells go on halving as far as a receiver asks.
+class ShootingField {
+ public:
+  /// Emission.
+  ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters);
+  /// Light reflected by nodes: `lobes` with zeros where a node does not shoot. `planar` patches share one
+  /// basis evaluation. Both references are kept.
+  ShootingField(const Scene& scene, const Mesh& mesh, const std::vector<uint8_t>& hidden, const NodeLobes& lobes);
+
+  struct Root {
+    std::array<Vec3, 3> corners;
+    Vec3 normal;
+    Rgb radiance;          ///< mean over the cell
+    uint32_t cell;         ///< kNone for an emitter
+    bool glossy;           ///< radiance depends on direction: read lobes
+  };
+  const std::vector<Root>& roots() const { return roots_; }
+  const Rgb& cell_radiance(uint32_t cell) const { return cell_radiance_[cell]; }
+  const Mesh& mesh() const { return *mesh_; }
+  bool emission() const { return lobes_ == nullptr; }
+
+  /// Radiance of a point of `element`, given by weights, towards `wo_world`. `basis` is scratch.
+  Rgb Radiance(uint32_t element, const float weight[3], const Vec3& wo_world, float* basis) const;
+
+ private:
+  const Mesh* mesh_;
+  const std::vector<uint8_t>* hidden_ = nullptr;
+  const NodeLobes* lobes_ = nullptr;
+  std::vector<Root> roots_;
+  std::vector<Rgb> cell_radiance_;
+  int max_degree_ = 0;
+};
+
+/// What a receiver got of one step, for the ledger (W m^-2) and for counting work.
+struct Received {
+  Rgb delivered = Rgb::Zero(), absorbed = Rgb::Zero(), mirrored = Rgb::Zero();
+  Rgb reflected = Rgb::Zero();                ///< by albedo, angle by angle; the lobes' flux should equal it
+  uint64_t rays = 0;
+  uint64_t lobe_reads = 0, lobe_writes = 0;   ///< directional evaluations and accumulations
+  double seconds_cutting = 0, seconds_rays = 0, seconds_reads = 0, seconds_accumulating = 0;
+};
+
+/// Gathers a step's light at one receiving node after another: the receiving half of progressive shooting
+/// (Cohen and Wallace, Radiosity and Realistic Image Synthesis, fig. 10.15). One per thread; holds scratch.
+class Receiver {
+ public:
+  Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials);
+
+  /// Cuts `field` into about `samples` delta areas, more where more light is expected to come from, traces one
+  /// shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes, zeroed by
+  /// the caller). `received_before`: sum over channels of the irradiance so far; cells that bring less
+  /// than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
+  /// `seed` decides which point of a cell stands for it. `timed`: fill the seconds.
+  Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
+                  float* out, bool timed);
+
+ private:
+  // A piece of a root, as large as the receiver allows.
+  struct Cell {
+    std::array<Vec3, 3> corners;
+    std::array<Vec3, 3> weights;   // of the element's nodes at the corners; at and below a leaf only
+    Rgb radiance;
+    TriangleLight light;           // of radiance 1, unoccluded
+    float expected;                // irradiance it would bring, summed over channels
+    uint32_t cell, element;
+    int depth;
+  };
+  // A delta area: what arrives if its shadow ray is free.
+  struct Delta {
+    Vec3 direction;
+    Rgb irradiance;
+  };
+  void Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
+           Received& work);
+  void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point, const Vec3& normal,
+             const Cell& parent);
+  void Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node, const Cell& cell,
+            float weight, RandomStream& random, Received& work);
+
+  const Mesh& mesh_;
+  const RayTracer& tracer_;
+  const std::vector<MaterialLobes>& materials_;
+  std::vector<Cell> stack_;
+  std::vector<Delta> deltas_;
+  std::vector<Ray> rays_;
+  std::vector<uint8_t> occluded_;
+  std::vector<float> basis_;
+  std::vector<float> expected_;   // per root
+  IncidentMoments moments_;
+};
+
+}  // namespace lobe
