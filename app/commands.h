@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -32,6 +33,9 @@ struct CommonFlags {
 
 /// What a command hands back to main: run after all flags are parsed.
 using Command = std::function<ExitCode(Console&)>;
+
+/// --seed, which commands share that choose anything at random.
+void AddSeedFlag(CLI::App* command, uint64_t* seed);
 
 /// Each adds its subcommand to `app`; when that is the one asked for, `*command` is set.
 void AddSolveCommand(CLI::App& app, Command* command);

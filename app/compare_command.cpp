@@ -12,7 +12,8 @@ namespace lobe {
 namespace {
 
 struct CompareFlags {
-  std::string picture, reference, reference2, mask, output;
+  std::string picture, reference;
+  std::optional<std::string> reference2, mask, output;
 };
 
 std::string Percent(double fraction) { return Format("%.2f %%", 100 * fraction); }
@@ -29,26 +30,26 @@ std::string Text(const Comparison& c) {
 }
 
 ExitCode RunCompare(const CompareFlags& flags, Console& console) {
-  if (!flags.output.empty()) {
-    RequireExtension("-o", flags.output, {".png"});
-    CheckWritable(flags.output);
+  if (flags.output) {
+    RequireExtension("-o", *flags.output, {".png"});
+    CheckWritable(*flags.output);
   }
   const Image picture = ReadExr(flags.picture), reference = ReadExr(flags.reference);
   std::optional<Image> reference2;
-  if (!flags.reference2.empty()) reference2 = ReadExr(flags.reference2);
+  if (flags.reference2) reference2 = ReadExr(*flags.reference2);
   std::optional<Mask> mask;
-  if (!flags.mask.empty()) mask = ReadPngMask(flags.mask);
+  if (flags.mask) mask = ReadPngMask(*flags.mask);
 
   Comparison c;
   try {
     c = Compare(picture, reference, reference2 ? &*reference2 : nullptr, mask ? &*mask : nullptr);
-    if (!flags.output.empty()) {
+    if (flags.output) {
       Image middle = reference;  // with two references the difference is to their mean
       for (size_t i = 0; reference2 && i < middle.pixels.size(); ++i) {
         middle.pixels[i] = 0.5f * (reference.pixels[i] + reference2->pixels[i]);
       }
-      WritePng(DifferencePicture(picture, middle, mask ? &*mask : nullptr), 0, flags.output);
-      console.Say("wrote " + flags.output + ": |difference| over the mean, pale yellow from " +
+      WritePng(DifferencePicture(picture, middle, mask ? &*mask : nullptr), 0, *flags.output);
+      console.Say("wrote " + *flags.output + ": |difference| over the mean, pale yellow from " +
                   Percent(kDifferenceFullScale));
     }
   } catch (const InputError& e) {

@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/report.h"
 #include "app/values.h"
+#include "app/view_flags.h"
 #include "brdf/frame.h"
 #include "render/camera_view.h"
 #include "render/lobe_figures.h"
@@ -17,21 +18,30 @@ namespace lobe {
 namespace {
 
 struct InspectFlags {
-  std::string solution, at, camera, pixel, size, output;
-  int64_t node = -1;
-  bool has_node = false;
+  std::string solution;
+  std::optional<int64_t> node;
+  std::optional<std::string> at, pixel, output;
+  ViewFlags view;
+
+  // From the flags, once checked.
+  Vec3 point;
+  PixelPosition position;
 };
 
-void Validate(const InspectFlags& flags) {
-  const int ways = int(flags.has_node) + int(!flags.at.empty()) + int(!flags.pixel.empty());
+/// Everything that can be said without opening a file.
+void Validate(InspectFlags* flags) {
+  const int ways = int(flags->node.has_value()) + int(flags->at.has_value()) + int(flags->pixel.has_value());
   if (ways != 1) {
     throw UsageError(std::to_string(ways) +
                      " of --node, --at and --pixel are given; exactly one is expected");
   }
-  if (flags.pixel.empty() && !(flags.camera.empty() && flags.size.empty())) {
-    throw UsageError("--camera and --size belong to --pixel, which is missing");
+  if (!flags->pixel && flags->view.given()) {
+    throw UsageError("--camera, --size, --eye and --fov belong to --pixel, which is missing");
   }
-  if (!flags.output.empty()) RequireExtension("-o", flags.output, {".glb", ".gltf", ".png", ".svg"});
+  flags->view.Validate();
+  if (flags->at) flags->point = ParseVector("--at", *flags->at);
+  if (flags->pixel) flags->position = ParsePixel("--pixel", *flags->pixel);
+  if (flags->output) RequireExtension("-o", *flags->output, {".glb", ".gltf", ".png", ".svg"});
 }
 
 /// The node that speaks loudest at a place of the mesh, hidden ones only when there is no other.
@@ -70,38 +80,34 @@ uint32_t NodeAt(const Solution& s, const Vec3& point) {
 }
 
 uint32_t NodeInPixel(const Solution& s, const InspectFlags& flags) {
-  if (flags.camera.empty() && s.scene.cameras.empty())
-    throw InputError(s.scene.path + ": has no camera; use --at or --node");
-  const Camera& camera = flags.camera.empty() ? s.scene.cameras.front() : s.scene.FindCamera(flags.camera);
-  const PictureSize size = flags.size.empty() ? DefaultSize(camera) : ParseSize("--size", flags.size);
-  const PixelPosition pixel = ParsePixel("--pixel", flags.pixel);
-  if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.width || pixel.y >= size.height) {
-    throw UsageError("--pixel: " + flags.pixel + " is outside a picture of " + std::to_string(size.width) +
+  const Camera camera = flags.view.ChooseCamera(s.scene);
+  const PictureSize size = flags.view.ChooseSize(camera);
+  const PixelPosition& p = flags.position;
+  if (p.x < 0 || p.y < 0 || p.x >= size.width || p.y >= size.height) {
+    throw UsageError("--pixel: " + *flags.pixel + " is outside a picture of " + std::to_string(size.width) +
                      "x" + std::to_string(size.height));
   }
-  const Ray ray =
-      CameraView(camera, size.width, size.height).EyeRay(float(pixel.x) + 0.5f, float(pixel.y) + 0.5f);
+  const Ray ray = CameraView(camera, size.width, size.height).EyeRay(float(p.x) + 0.5f, float(p.y) + 0.5f);
   const RayHit hit = RayTracer(s.scene).Intersect(ray);
-  const std::string place = "pixel " + flags.pixel + " of camera '" + camera.name + "'";
-  if (!hit.hit())
-    throw InputError(s.scene.path + ": " + place + " looks past the scene; a pixel on a surface is expected");
+  const std::string place = s.scene.path + ": pixel " + *flags.pixel;
+  if (!hit.hit()) throw InputError(place + " looks past the scene; a pixel on a surface is expected");
   const Mesh::Location where = s.mesh.Locate(hit.face, hit.side, hit.u, hit.v);
   if (where.element == kNone) {
-    throw InputError(s.scene.path + ": " + place + " sees a side of '" +
-                     s.scene.surface_names[s.scene.faces[hit.face].surface] + "' that no light reaches");
+    throw InputError(place + " sees a side of '" + s.scene.surface_names[s.scene.faces[hit.face].surface] +
+                     "' that holds no light");
   }
   return LoudestNode(s, where);
 }
 
 uint32_t ChooseNode(const Solution& s, const InspectFlags& flags) {
-  if (!flags.at.empty()) return NodeAt(s, ParseVector("--at", flags.at));
-  if (!flags.pixel.empty()) return NodeInPixel(s, flags);
-  if (flags.node < 0 || uint64_t(flags.node) >= s.mesh.node_count()) {
-    throw UsageError("--node: " + std::to_string(flags.node) +
+  if (flags.at) return NodeAt(s, flags.point);
+  if (flags.pixel) return NodeInPixel(s, flags);
+  if (*flags.node < 0 || uint64_t(*flags.node) >= s.mesh.node_count()) {
+    throw UsageError("--node: " + std::to_string(*flags.node) +
                      " is out of range: the solution has nodes 0 to " +
                      std::to_string(int64_t(s.mesh.node_count()) - 1));
   }
-  return uint32_t(flags.node);
+  return uint32_t(*flags.node);
 }
 
 /// Base and gloss together, rows over the basis, three columns.
@@ -218,17 +224,14 @@ void WritePicture(const Inspection& i, const Solution& s, const std::string& pat
   }
 }
 
-ExitCode RunInspect(const InspectFlags& flags, Console& console) {
-  Validate(flags);
-  if (!flags.at.empty()) ParseVector("--at", flags.at);
-  if (!flags.pixel.empty()) ParsePixel("--pixel", flags.pixel);
-  if (!flags.size.empty()) ParseSize("--size", flags.size);
-  if (!flags.output.empty()) CheckWritable(flags.output);
+ExitCode RunInspect(InspectFlags flags, Console& console) {
+  Validate(&flags);
+  if (flags.output) CheckWritable(*flags.output);
   const Solution solution = ReadSolution(flags.solution);
   const Inspection inspection = Inspect(solution, ChooseNode(solution, flags));
-  if (!flags.output.empty()) {
-    WritePicture(inspection, solution, flags.output);
-    console.Say("wrote " + flags.output);
+  if (flags.output) {
+    WritePicture(inspection, solution, *flags.output);
+    console.Say("wrote " + *flags.output);
   }
   console.Result(Text(inspection), ToJsonObject(inspection));
   return kDone;
@@ -253,26 +256,19 @@ void AddInspectCommand(CLI::App& app, Command* command) {
   inspect->add_option("SOLUTION", flags->solution, "Solution written by `lobe solve`")
       ->type_name("")
       ->required();
-  CLI::Option* node =
-      inspect->add_option("--node", flags->node, "The node of this number, from 0")->type_name("N");
-  inspect->add_option("--at", flags->at, "The node that weighs most at the surface nearest to X,Y,Z, metres")
+  inspect->add_option("--node", flags->node, "The node of this number, from 0")->type_name("N");
+  inspect
+      ->add_option("--at", flags->at, "The node that weighs most at the nearest point of a surface, metres")
       ->type_name("X,Y,Z");
   inspect
       ->add_option("--pixel", flags->pixel,
-                   "The node that weighs most in pixel X,Y, from 0,0 at the top left")
+                   "The node that weighs most in this pixel, from 0,0 at the top left")
       ->type_name("X,Y");
-  inspect->add_option("--camera", flags->camera, "With --pixel: camera of the file, by name [the first]")
-      ->type_name("NAME");
-  inspect
-      ->add_option("--size", flags->size,
-                   "With --pixel: picture size in pixels [512 high, the camera's aspect]")
-      ->type_name("WxH");
+  flags->view.AddTo(inspect);
   inspect->add_option("-o,--output", flags->output, "Picture of the lobe to write, .glb, .gltf, .png or .svg")
       ->type_name("FILE");
-  inspect->callback([flags, command, node] {
-    flags->has_node = node->count() > 0;
-    *command = [flags](Console& console) { return RunInspect(*flags, console); };
-  });
+  inspect->callback(
+      [flags, command] { *command = [flags](Console& console) { return RunInspect(*flags, console); }; });
 }
 
 }  // namespace lobe

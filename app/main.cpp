@@ -63,6 +63,18 @@ ExitCode Run(CLI::App& app, const CommonFlags& flags, const Command& command, bo
   return kFailed;
 }
 
+/// CLI11's words, or better ones where it does not know what was meant.
+std::string UsageSentence(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
+    return std::string("'") + argv[1] +
+           "' is no command; solve, render, info, inspect and compare are (lobe --help)";
+  }
+  std::string sentence = error.what();
+  sentence += chosen.empty() ? " (lobe --help)" : " (lobe " + chosen.front()->get_name() + " --help)";
+  return sentence;
+}
+
 int Main(int argc, char** argv) {
   CLI::App app{kDescription, "lobe"};
   app.set_version_flag("--version", "lobe " LOBE_VERSION);
@@ -84,15 +96,24 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& e) {
-    const auto chosen = app.get_subcommands();
-    PrintError(std::string(e.what()) + " (lobe " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
-               "--help)");
+    PrintError(UsageSentence(app, e, argc, argv));
     return kWrongUsage;
   }
   return Run(app, flags, command, app.get_subcommands().front()->count("--threads") > 0);
 }
 
 }  // namespace
+
+void AddSeedFlag(CLI::App* command, uint64_t* seed) {
+  command->add_option("--seed", *seed, "Seed of all random choices; the same seed gives the same bits")
+      ->type_name("N")
+      ->capture_default_str()
+      // CLI11 would wrap negative numbers around.
+      ->check([](const std::string& text) {
+        return text.rfind('-', 0) == 0 ? "--seed: " + text + " is negative" : "";
+      });
+}
+
 }  // namespace lobe
 
 int main(int argc, char** argv) {

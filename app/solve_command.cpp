@@ -152,9 +152,7 @@ void AddSolveCommand(CLI::App& app, Command* command) {
   solve->add_option("--max-seconds", o.max_seconds, "Stop after so many seconds; 0: no limit")
       ->type_name("S")
       ->capture_default_str();
-  solve->add_option("--seed", o.seed, "Seed of all random choices; the same seed gives the same bits")
-      ->type_name("N")
-      ->capture_default_str();
+  AddSeedFlag(solve, &o.seed);
   solve->callback(
       [flags, command] { *command = [flags](Console& console) { return RunSolve(*flags, console); }; });
 }

@@ -3,7 +3,7 @@
 add_library(lobe_flags INTERFACE)
 target_include_directories(lobe_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(lobe_flags INTERFACE cxx_std_20)
-target_compile_options(lobe_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
+target_compile_options(lobe_flags INTERFACE -Wall -Wextra -Wshadow=local -Wnon-virtual-dtor)
 if(LOBE_WARNINGS_AS_ERRORS)
   target_compile_options(lobe_flags INTERFACE -Werror)
 endif()

@@ -21,8 +21,7 @@ step "3/4 solve: light of all bounces, in every direction, stored on the mesh"
 
 step "4/4 look at it from two cameras: no light is computed any more"
 for camera in view0 view1; do
-  "$lobe" render out/cornell_glossy.solution.glb --camera "$camera" -o "out/$camera.exr"
-  "$lobe" render out/cornell_glossy.solution.glb --camera "$camera" -o "out/$camera.png"
+  "$lobe" render out/cornell_glossy.solution.glb --camera "$camera" -o "out/$camera.exr" -o "out/$camera.png"
 done
 
 cat >&2 <<END
@@ -30,8 +29,8 @@ cat >&2 <<END
 Pictures:  $root/out/view0.png  $root/out/view1.png  (and .exr, scene-linear)
 Solution:  $root/out/cornell_glossy.solution.glb  (any glTF viewer shows it, baked)
 
-How to go on:
-  $root/$lobe info out/cornell_glossy.solution.glb
-  $root/$lobe render out/cornell_glossy.solution.glb --eye 0,1,3 --target 0,1,0 --up 0,1,0 --fov 40 -o out/mine.png
-  $root/$lobe solve YOUR_SCENE.glb -o out/yours.glb && $root/$lobe info out/yours.glb
+How to go on, in $root:
+  $lobe info out/cornell_glossy.solution.glb
+  $lobe render out/cornell_glossy.solution.glb --eye 0,1,3 --target 0,1,0 --fov 40 -o out/mine.png
+  $lobe solve YOUR_SCENE.glb -o out/yours.glb
 END

@@ -27,9 +27,8 @@ struct RayHit {
 /// Visibility among the scene's input triangles. The one place that knows Embree. Const methods may
 /// run in many threads; results do not depend on how rays are grouped.
 ///
-/// Faces that repeat another's three corners are one: rays meet the first with that winding, and where
-/// both windings exist each shows its front. Other faces that overlap in one plane hide each other at
-/// random (a modelling mistake), and only there may grouping show.
+/// Of faces met at one t the first counts. Where faces repeat each other's three corners, as sheets modelled
+/// for both sides do, each winding shows its front.
 class RayTracer {
  public:
   explicit RayTracer(const Scene& scene);

@@ -1,0 +1,235 @@
+#include "scene/ray_tracer.h"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "scene/gltf_scene.h"
+#include "tests/support/brute_force_tracer.h"
+#include "tests/support/scene_builder.h"
+
+namespace lobe {
+namespace {
+
+using test::BruteForceIntersect;
+using test::SceneBuilder;
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+class Random {
+ public:
+  float Uniform() { return uniform_(bits_); }
+  Vec3 Gauss() { return {normal_(bits_), normal_(bits_), normal_(bits_)}; }
+  Vec3 Direction() { return Gauss().normalized(); }
+
+ private:
+  std::mt19937 bits_{7};
+  std::uniform_real_distribution<float> uniform_;
+  std::normal_distribution<float> normal_;
+};
+
+Scene Soup(int count, Random* random) {
+  SceneBuilder b;
+  const uint32_t grey = b.AddLambert(Rgb::Constant(0.5f));
+  for (int i = 0; i < count; ++i) {
+    const Vec3 c = 2 * random->Gauss();
+    b.AddTriangle(c + random->Gauss(), c + random->Gauss(), c + random->Gauss(), grey);
+  }
+  return b.Build();
+}
+
+Scene RoomWithThings() {
+  SceneBuilder b;
+  const uint32_t grey = b.AddLambert(Rgb::Constant(0.5f));
+  b.AddBox({-2, 0, -2}, {2, 3, 2}, grey, true);
+  b.AddBox({-1, 0, -1}, {0.1f, 1.3f, 0.2f}, grey);
+  b.AddSphere({1, 0.7f, 0.5f}, 0.6f, grey, 24);
+  return b.Build();
+}
+
+bool Same(const RayHit& a, const RayHit& b) {
+  return a.face == b.face && a.t == b.t && a.u == b.u && a.v == b.v && a.side == b.side;
+}
+
+TEST(RayTracerTest, AgreesWithBruteForce) {
+  Random random;
+  const Scene scene = Soup(60, &random);
+  const RayTracer tracer(scene);
+  int hits = 0, backs = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Ray ray = {3 * random.Gauss(), 0.1f, random.Gauss(), 5};
+    const RayHit expected = BruteForceIntersect(scene, ray), hit = tracer.Intersect(ray);
+    EXPECT_EQ(tracer.Occluded(ray), hit.hit());
+    if (hit.face != expected.face) {
+      // Single and double precision may differ on an edge, or at the end of the ray, and nowhere else.
+      const RayHit& of = expected.hit() ? expected : hit;
+      const float edge = std::min({of.u, of.v, 1 - of.u - of.v});
+      EXPECT_TRUE(edge < 1e-5f || of.t < 0.1f + 1e-5f || of.t > 5 - 1e-4f) << i;
+      continue;
+    }
+    if (!hit.hit()) continue;
+    ++hits;
+    backs += hit.side == Side::kBack;
+    EXPECT_EQ(hit.side, expected.side);
+    // Coordinates of about 10 round by 1e-6; a ray that grazes multiplies that.
+    const Vec3 n = scene.GeometricNormal(scene.faces[hit.face]);
+    const float cosine = std::abs(n.dot(ray.direction.normalized()));
+    const float length = ray.direction.norm();
+    EXPECT_NEAR(hit.t * length, expected.t * length, 1e-5f / cosine);
+    const auto p = scene.Corners(scene.faces[hit.face]);
+    const Vec3 by_barycentrics = (1 - hit.u - hit.v) * p[0] + hit.u * p[1] + hit.v * p[2];
+    EXPECT_LT((by_barycentrics - (ray.origin + hit.t * ray.direction)).norm(), 2e-5f / cosine);
+  }
+  EXPECT_GT(hits, 500);
+  EXPECT_GT(backs, hits / 4);
+}
+
+TEST(RayTracerTest, SideIsFrontForCounterClockwise) {
+  SceneBuilder b;
+  b.AddTriangle({0.3f, 0.1f, 0}, {2.1f, 0.2f, 0.3f}, {0.2f, 1.7f, 0.4f}, b.AddLambert(Rgb::Zero()));
+  const Scene scene = b.Build();
+  const RayTracer tracer(scene);
+  const auto p = scene.Corners(scene.faces[0]);
+  const Vec3 inside = 0.5f * p[0] + 0.2f * p[1] + 0.3f * p[2];
+  const Vec3 n = scene.GeometricNormal(scene.faces[0]);
+  const RayHit front = tracer.Intersect({inside + 2 * n, 0, -n, kFar});
+  ASSERT_TRUE(front.hit());
+  EXPECT_EQ(front.side, Side::kFront);
+  EXPECT_NEAR(front.t, 2, 1e-5);
+  EXPECT_NEAR(front.u, 0.2, 1e-5);
+  EXPECT_NEAR(front.v, 0.3, 1e-5);
+  const RayHit back = tracer.Intersect({inside - 2 * n, 0, 4 * n, kFar});
+  ASSERT_TRUE(back.hit());
+  EXPECT_EQ(back.side, Side::kBack);
+  EXPECT_NEAR(back.t, 0.5, 1e-5) << "t is in multiples of the direction";
+}
+
+TEST(RayTracerTest, PacketsEqualSinglesBitForBit) {
+  Random random;
+  for (const Scene& scene : {RoomWithThings(), Soup(300, &random),
+                             ReadGltfScene(LOBE_TEST_DATA "/scenes/glossy_floor.glb")}) {
+    const RayTracer tracer(scene);
+    const Vec3 centre = scene.Bounds().center();
+    std::vector<Ray> rays;
+    // A picture, rays everywhere, and rays at vertices and the middles of edges, where faces tie.
+    for (int i = 0; i < 128 * 128; ++i) {
+      rays.push_back({centre, 0, Vec3(i % 128 / 64.0f - 1, i / 128 / 64.0f - 1, -1), kFar});
+    }
+    for (int i = 0; i < 20001; ++i) {
+      const auto p = scene.Corners(scene.faces[i % scene.faces.size()]);
+      const Vec3 at = i % 2 ? p[0] : Vec3((p[1] + p[2]) * 0.5f);
+      rays.push_back({centre, 0, i % 3 ? random.Direction() : Vec3(at - centre), i % 5 ? kFar : 1.5f});
+    }
+    std::vector<RayHit> singles(rays.size()), packets(rays.size());
+    std::vector<uint8_t> occluded(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) singles[i] = tracer.Intersect(rays[i]);
+
+    for (const bool coherent : {true, false}) {
+      for (const size_t chunk : {rays.size(), size_t{1}, size_t{5}, size_t{16}, size_t{23}}) {
+        for (size_t begin = 0; begin < rays.size(); begin += chunk) {
+          const size_t n = std::min(chunk, rays.size() - begin);
+          tracer.Intersect(std::span(rays).subspan(begin, n), std::span(packets).subspan(begin, n), coherent);
+          tracer.Occluded(std::span(rays).subspan(begin, n), std::span(occluded).subspan(begin, n), coherent);
+        }
+        size_t different = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+          different += !Same(singles[i], packets[i]) || (occluded[i] != 0) != tracer.Occluded(rays[i]);
+        }
+        EXPECT_EQ(different, 0u) << "coherent " << coherent << ", chunks of " << chunk;
+      }
+    }
+  }
+}
+
+TEST(RayTracerTest, LiftedOriginsDoNotMeetTheirOwnFace) {
+  Random random;
+  int met = 0, missed = 0, total = 0;
+  for (int k = 0; k < 60; ++k) {
+    SceneBuilder b;
+    const float size = std::pow(10.0f, random.Gauss().x());
+    const Vec3 c = 3 * random.Gauss();
+    b.AddTriangle(c + size * random.Gauss(), c + size * random.Gauss(), c + size * random.Gauss(),
+                  b.AddLambert(Rgb::Zero()));
+    const Scene scene = b.Build();
+    const RayTracer tracer(scene);
+    const auto p = scene.Corners(scene.faces[0]);
+    const Vec3 n = scene.GeometricNormal(scene.faces[0]);
+    for (int i = 0; i < 500; ++i) {
+      float u = random.Uniform(), v = random.Uniform();
+      if (u + v > 1) std::tie(u, v) = std::pair(1 - u, 1 - v);
+      const Vec3 point = (1 - u - v) * p[0] + u * p[1] + v * p[2];
+      Vec3 d = random.Direction();
+      d -= d.dot(n) * n;
+      d = d.normalized() + std::pow(10.0f, -4 * random.Uniform()) * n;
+      ++total;
+      met += tracer.Occluded({point + tracer.epsilon() * n, 0, d, kFar});
+      // And the lift is no more than it need be: from as far below, steep rays do meet it.
+      if (std::min({u, v, 1 - u - v}) > 0.1f) {
+        missed += !tracer.Occluded({point - tracer.epsilon() * n, 0, n, kFar});
+      }
+    }
+  }
+  EXPECT_EQ(met, 0) << "of " << total;
+  EXPECT_EQ(missed, 0) << "of " << total;
+}
+
+TEST(RayTracerTest, SealedRoomDoesNotLeak) {
+  const Scene scene = RoomWithThings();
+  const RayTracer tracer(scene);
+  Random random;
+  int leaks = 0;
+  for (int i = 0; i < 20000; ++i) {
+    // At edges and corners of the room in particular.
+    Vec3 target(random.Uniform() < 0.5f ? -2.0f : 2.0f, 3 * random.Uniform(), random.Uniform() < 0.5f ? -2.0f : 2.0f);
+    if (i % 4 == 0) target.y() = i % 8 ? 0.0f : 3.0f;
+    const Vec3 eye(0.31f, 2.2f, -0.27f);
+    leaks += !tracer.Intersect({eye, 0, i % 2 ? Vec3(target - eye) : random.Direction(), kFar}).hit();
+  }
+  EXPECT_EQ(leaks, 0);
+}
+
+TEST(RayTracerTest, OppositeTwinsShowTheirFrontsAndRepeatsTheFirst) {
+  const Vec3 p0(0, 0, 0), p1(1, 0.1f, 0), p2(0.2f, 1, 0.3f);
+  SceneBuilder b;
+  const uint32_t grey = b.AddLambert(Rgb::Zero());
+  b.AddTriangle({0, 0, -5}, {1, 0, -5}, {0, 1, -5}, grey);
+  b.AddTriangle(p0, p1, p2, grey);
+  b.AddTriangle(p1, p2, p0, grey);
+  b.AddTriangle(p0, p2, p1, grey);
+  b.AddTriangle(p2, p1, p0, grey);
+  const Scene scene = b.Build();
+  const RayTracer tracer(scene);
+  const Vec3 point = 0.5f * p0 + 0.2f * p1 + 0.3f * p2, n = scene.GeometricNormal(scene.faces[1]);
+  for (const float from : {1.0f, -1.0f}) {
+    const RayHit hit = tracer.Intersect({point + from * n, 0, -from * n, kFar});
+    EXPECT_EQ(hit.face, from > 0 ? 1u : 3u);
+    EXPECT_EQ(hit.side, Side::kFront);
+    const auto p = scene.Corners(scene.faces[hit.face]);
+    EXPECT_LT(((1 - hit.u - hit.v) * p[0] + hit.u * p[1] + hit.v * p[2] - point).norm(), 1e-6f);
+  }
+  EXPECT_EQ(tracer.Intersect({{0.2f, 0.2f, -4}, 0, {0, 0, -1}, kFar}).face, 0u);
+}
+
+TEST(RayTracerTest, RaysEndWhereTheyAreToldTo) {
+  SceneBuilder b;
+  b.AddQuad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, b.AddLambert(Rgb::Zero()));
+  const RayTracer tracer(b.Build());
+  const auto occluded = [&](float t_min, float t_max) {
+    return tracer.Occluded({{0.1f, 0.2f, 1}, t_min, {0, 0, -1}, t_max});
+  };
+  EXPECT_TRUE(occluded(0, 1.001f));
+  EXPECT_FALSE(occluded(0, 0.999f));
+  EXPECT_FALSE(occluded(1.001f, kFar));
+}
+
+TEST(RayTracerTest, SceneWithoutFacesIsEmptySpace) {
+  const RayTracer tracer{Scene{}};
+  EXPECT_FALSE(tracer.Occluded({Vec3::Zero(), 0, Vec3::UnitX(), kFar}));
+  EXPECT_FALSE(tracer.Intersect({Vec3::Zero(), 0, Vec3::UnitX(), kFar}).hit());
+  EXPECT_EQ(tracer.epsilon(), 0);
+}
+
+}  // namespace
+}  // namespace lobe
