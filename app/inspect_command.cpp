@@ -74,8 +74,7 @@ uint32_t NodeAt(const Solution& s, const Vec3& point) {
       break;
     }
   }
-  if (found.element == kNone)
-    throw InputError(s.scene.path + ": holds no nodes at all; nothing can be inspected");
+  if (found.element == kNone) throw InputError(s.scene.path + ": holds no nodes; nothing can be inspected");
   return LoudestNode(s, found);
 }
 

@@ -110,7 +110,7 @@ void AddSeedFlag(CLI::App* command, uint64_t* seed) {
       ->capture_default_str()
       // CLI11 would wrap negative numbers around.
       ->check([](const std::string& text) {
-        return text.rfind('-', 0) == 0 ? "--seed: " + text + " is negative" : "";
+        return text.rfind('-', 0) == 0 ? "'" + text + "' is negative" : "";
       });
 }
 

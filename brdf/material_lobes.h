@@ -26,10 +26,10 @@ const char* Name(GlossKind kind);
 struct LobeOptions {
   /// Cap on the degree of a lobe, inclusive, 0..32. Memory and time per glossy node grow as
   /// (l_max+1)(l_max+2)/2. Default measured in docs/validation.md#degree.
-  int l_max = 16;
-  /// Flux-weighted error (0.2 = 20 %) a lobe may have; the smallest degree within it is taken.
+  int l_max = 20;
+  /// Flux-weighted error (0.1 = 10 %) a lobe may have; the smallest degree within it is taken.
   /// Default measured in docs/validation.md#degree.
-  double error = 0.20;
+  double error = 0.10;
   /// Gives every gloss part exactly this degree; -1: choose by error.
   int force_l_max = -1;
 };

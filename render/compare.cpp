@@ -83,8 +83,9 @@ Comparison Compare(const Image& a, const Image& reference, const Image* referenc
       if (count > 0) blocks.Add(block_a / count, block_r / count, block_s / count, count);
     }
   }
-  if (pixels.weight == 0)
+  if (pixels.weight == 0) {
     throw InputError("the mask leaves out every pixel; at least one is needed to compare");
+  }
   if (!(pixels.Mean(pixels.reference) > 0)) {
     throw InputError("the reference's mean over the compared pixels is " +
                      std::to_string(pixels.Mean(pixels.reference)) +

@@ -65,8 +65,9 @@ std::string OneLine(std::string text) {
 template <typename Read>
 auto WithFile(const std::string& path, Read read) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error))
+  if (!std::filesystem::exists(path, error)) {
     throw InputError(path + ": no such file; an OpenEXR picture is expected");
+  }
   if (std::filesystem::is_directory(path, error)) {
     throw InputError(path + ": is a directory; an OpenEXR picture is expected");
   }

@@ -6,11 +6,14 @@
 
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "scene/input_error.h"
 
@@ -232,7 +235,12 @@ void WriteFileAtomically(const std::string& path, std::span<const uint8_t> bytes
 }
 
 void CheckWritable(const std::string& path) {
-  // Trying is the only honest test: permissions say nothing about read-only or full file systems.
+  const fs::path target = Target(path);
+  if (IsSpecial(target)) {   // opening a pipe would wait for its reader
+    if (access(target.c_str(), W_OK) != 0) FailToWrite(path, errno);
+    return;
+  }
+  // Trying is the only honest test: permissions say nothing about read-only file systems.
   const TemporaryFile attempt(path);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ class GltfFile {
   /// Throws InputError with one sentence for anything unreadable: missing, truncated, wrong magic,
   /// malformed JSON, missing buffers, accessors outside their buffers.
   explicit GltfFile(const std::string& path);
+  /// The same from what such a file holds; `path` serves messages and finds buffers beside it.
+  GltfFile(const std::string& path, std::vector<uint8_t> bytes);
   ~GltfFile();
   GltfFile(GltfFile&&) noexcept;
 

@@ -311,7 +311,8 @@ std::vector<Camera> ReadCameras(const GltfFile& file) {
     camera.right = right.normalized().cast<float>();
     camera.up = back.cross(right).normalized().cast<float>();
 
-    const std::string name = json.String("name", node.name);
+    const std::string own_name = json.String("name");
+    const std::string name = own_name.empty() ? node.name : own_name;
     camera.name = name;
     for (int copy = 2; !names.insert(camera.name).second; ++copy) camera.name = name + "-" + std::to_string(copy);
     cameras.push_back(camera);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "brdf/incident_moments.h"
@@ -71,6 +73,9 @@ class Receiver {
   /// `seed` decides which point of a cell stands for it. `timed`: fill the seconds.
   Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
                   float* out, bool timed);
+
+  /// The shadow rays of the last Gather, for measuring what tracing them alone costs (bench/).
+  std::span<const Ray> last_rays() const { return rays_; }
 
  private:
   // A piece of a root, as large as the receiver allows.

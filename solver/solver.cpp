@@ -68,7 +68,9 @@ class ProgressiveSolver {
       s_.direct = s_.total;
       s_.stop_reason = Iterate();
     } else {
+      // Told to stop before emission was through: all of it is still to be shot.
       s_.ledger.sent = s_.ledger.escaped = s_.ledger.blocked = {};
+      s_.ledger.unshot += emitted_;
       s_.stop_reason = WhyStop();
     }
     Close();

@@ -110,7 +110,7 @@ void ExpectMeshLaws(const Scene& scene, const Mesh& mesh, float max_edge) {
     }
   }
   for (const int n : leaves) ASSERT_EQ(n, 1);
-  std::map<uint32_t, double> area;   // by root
+  const double scene_size = scene.Bounds().diagonal().norm();
   for (uint32_t root = 0; root < mesh.roots.size(); ++root) {
     if (mesh.roots[root] == kNone) continue;
     ++parents[mesh.roots[root]];
@@ -129,9 +129,11 @@ void ExpectMeshLaws(const Scene& scene, const Mesh& mesh, float max_edge) {
         stack.insert(stack.end(), {cell.child, cell.child + 1});
       }
     }
-    // Every element's area rounds by about 1e-7 of its face's.
+    // Areas round by 2^-24 of themselves, and each midpoint on the face's edges moves by 2^-24 of its coordinates.
+    const auto p = scene.Corners(scene.faces[root / 2]);
     const double face_area = scene.Area(scene.faces[root / 2]);
-    ASSERT_NEAR(sum, face_area, 1e-5 * face_area);
+    const double perimeter = (p[0] - p[1]).norm() + (p[1] - p[2]).norm() + (p[2] - p[0]).norm();
+    ASSERT_NEAR(sum, face_area, 1e-6 * face_area + 1e-7 * scene_size * perimeter);
   }
   for (const int n : parents) ASSERT_EQ(n, 1);
 }

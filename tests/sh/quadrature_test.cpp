@@ -24,7 +24,9 @@ TEST(GaussLegendreTest, HasPositiveWeightsAndOrderedNodesAtTenThousandPoints) {
   double sum = 0;
   for (size_t i = 0; i < rule.nodes.size(); ++i) {
     ASSERT_GT(rule.weights[i], 0);
-    if (i > 0) ASSERT_GT(rule.nodes[i], rule.nodes[i - 1]);
+    if (i > 0) {
+      ASSERT_GT(rule.nodes[i], rule.nodes[i - 1]);
+    }
     sum += rule.weights[i];
   }
   EXPECT_NEAR(sum, 1.0, 1e-12);

@@ -1,0 +1,429 @@
+// Prints the figures of docs/validation.md as Markdown: figures TOPIC. Topics are listed without one.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <tbb/global_control.h>
+
+#include "render/compare.h"
+#include "render/exr.h"
+#include "render/renderer.h"
+#include "scene/gltf_scene.h"
+#include "sh/lobe.h"
+#include "sh/zernike.h"
+#include "solver/exposure.h"
+#include "solver/hash.h"
+#include "solver/shooting.h"
+#include "solver/solver.h"
+#include "tests/support/scene_builder.h"
+
+namespace lobe {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+const std::string kTests = "tests";   // run from the project's root
+
+double CpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+ScalarTable GgxTable(double roughness, int l_max) {
+  const double a = roughness * roughness;
+  return ScalarTable::Build(
+      [a](const Vec3d& wi, const Vec3d& wo) {
+        const Vec3d h = (wi + wo).normalized();
+        return GgxD(h.z(), a) * GgxV(wi.z(), wo.z(), a);
+      },
+      l_max, HalfVectorRule{.width = a});
+}
+
+MetallicRoughness Metal(float roughness) {
+  MetallicRoughness r;
+  r.base_color = Rgb::Constant(0.9f);
+  r.metallic = 1;
+  r.roughness = roughness;
+  return r;
+}
+
+// --- sphere and tables -------------------------------------------------------------------------------
+
+void Basis() {
+  std::printf("| l_max | orthonormality, double | worst float - double |\n|---|---|---|\n");
+  for (const int l_max : {4, 8, 16, 32, 48, 64}) {
+    const HemisphereBasis<double> exact(l_max);
+    const HemisphereBasis<float> single(l_max);
+    const HemisphereQuadrature rule(l_max);
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(exact.size(), exact.size());
+    Eigen::VectorXd h(exact.size());
+    std::vector<float> f(exact.size());
+    double worst = 0;
+    for (size_t i = 0; i < rule.weights.size(); ++i) {
+      const Eigen::Vector3f w = rule.directions[i].cast<float>();
+      single.Evaluate(w.x(), w.y(), w.z(), f.data());
+      exact.Evaluate(double(w.x()), double(w.y()), double(w.z()), h.data());
+      for (int k = 0; k < exact.size(); ++k) worst = std::max(worst, std::abs(double(f[k]) - h[k]));
+      const Vec3d& d = rule.directions[i];
+      exact.Evaluate(d.x(), d.y(), d.z(), h.data());
+      gram.selfadjointView<Eigen::Lower>().rankUpdate(h, rule.weights[i]);
+    }
+    gram.diagonal().array() -= 1;
+    std::printf("| %d | %.1e | %.1e |\n", l_max,
+                gram.triangularView<Eigen::Lower>().toDenseMatrix().cwiseAbs().maxCoeff(), worst);
+  }
+  const Eigen::MatrixXd lobe = Eigen::MatrixXd::Random(CoefficientCount(24), 3);
+  double flux = 0;
+  for (int l = 0; l < 24; ++l) {
+    flux = std::max(flux, (LobeFlux(ChangeDegree(lobe, l)) - LobeFlux(lobe)).cwiseAbs().maxCoeff());
+  }
+  std::printf("\nChange of degree from 24 to 0..23, worst change of flux: %.1e\n", flux);
+}
+
+void Degree() {
+  const int degrees[] = {4, 6, 8, 12, 16, 20, 24, 32};
+  std::printf("| roughness |");
+  for (const int l : degrees) std::printf(" l_max %d (%d) |", l, CoefficientCount(l));
+  std::printf("\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const double roughness : {1.0, 0.7, 0.6, 0.5, 0.4, 0.35, 0.3, 0.2, 0.1}) {
+    const auto table = GgxTable(roughness, 32);
+    std::printf("| %.2f |", roughness);
+    for (const int l : degrees) std::printf(" %.1f %% |", 100 * table.Error(l));
+    std::printf("\n");
+  }
+}
+
+// Between knots: the spline's lobe against a projection made at that angle, cos-weighted relative L2, and its flux
+// before the rest is added.
+void Knots() {
+  std::printf("| roughness | l_max | knots | worst flux error before the rest | worst lobe error to 85 degrees |\n"
+              "|---|---|---|---|---|\n");
+  for (const double roughness : {1.0, 0.5, 0.3}) {
+    for (const int l_max : {12, 20}) {
+      for (const int knots : {12, 16, 24, 36}) {
+        const double a = roughness * roughness;
+        const ScalarBrdf f = [a](const Vec3d& wi, const Vec3d& wo) {
+          const Vec3d h = (wi + wo).normalized();
+          return GgxD(h.z(), a) * GgxV(wi.z(), wo.z(), a);
+        };
+        const auto table = ScalarTable::Build(f, l_max, HalfVectorRule{.width = a}, knots);
+        // A table with many knots holds the truth at angles between ours.
+        const int fine = 4 * (knots - 1) + 1;
+        const auto truth = ScalarTable::Build(f, l_max, HalfVectorRule{.width = a}, fine);
+        const IncidenceSpline spline(knots), fine_spline(fine);
+        double flux = 0, error = 0;
+        for (int j = 0; j < fine; ++j) {
+          const double c = fine_spline.KnotCosine(j);
+          const auto s = spline.At(float(c));
+          Eigen::VectorXd z = Eigen::VectorXd::Zero(table.zernike.rows());
+          for (int n = 0; n <= l_max; ++n) {
+            for (int m = n % 2; m <= n; m += 2) {
+              const int row = ScalarTable::RowIndex(n, m);
+              const Eigen::MatrixXd control = spline.ControlValues(table.zernike.row(row).transpose(), m % 2 == 1);
+              for (int k = 0; k < 4; ++k) {
+                z[row] += (k == 0 && s.mirrored && m % 2 == 1 ? -1 : 1) * s.weight[k] * control(s.bin[k], 0);
+              }
+            }
+          }
+          flux = std::max(flux, std::sqrt(kPi) * std::abs(z[0] - truth.zernike(0, j)));
+          if (c > std::cos(85 * kPi / 180)) {
+            error = std::max(error, (z - truth.zernike.col(j)).norm() / std::sqrt(truth.norm2[j]));
+          }
+        }
+        std::printf("| %.1f | %d | %d | %.1e | %.2f %% |\n", roughness, l_max, knots, flux, 100 * error);
+      }
+    }
+  }
+}
+
+// --- solver ------------------------------------------------------------------------------------------
+
+struct NodeError {
+  double mean, worst;
+  size_t nodes;
+};
+NodeError Furnace(float edge, bool block) {
+  test::SceneBuilder b;
+  const uint32_t wall = b.AddMaterial("wall", Lambert{Rgb::Constant(0.5f)}, Rgb::Constant(1));
+  b.AddBox({0, 0, 0}, {4, 3, 5}, wall, true);
+  if (block) b.AddBox({1, 1, 1}, {2, 2, 2}, wall);
+  SolveOptions o;
+  o.mesh.max_edge = edge;
+  o.residual = 1e-5;
+  const Solution s = Solve(b.Build(), o);
+  const auto area = NodeAreas(s.mesh, s.hidden);
+  NodeError out{0, 0, s.mesh.node_count()};
+  double sum = 0;
+  for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
+    const double radiance = 1 + s.total.Flux(n)[1] / kPi;
+    out.mean += area[n] * radiance;
+    sum += area[n];
+    out.worst = std::max(out.worst, std::abs(radiance / 2 - 1));
+  }
+  out.mean /= sum;
+  return out;
+}
+
+double GlossFurnace(const Reflectance& reflectance, double* stated) {
+  test::SceneBuilder b;
+  b.AddBox({-2, -2, -2}, {2, 2, 2}, b.AddEmitter(Rgb::Constant(1)), true);
+  const uint32_t block = b.AddMaterial("block", reflectance);
+  b.AddBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, block);
+  SolveOptions o;
+  o.mesh.max_edge = 0.8f;
+  o.light_samples = 512;
+  const Solution s = Solve(b.Build(), o);
+  TableCache cache;
+  const MaterialLobes material(reflectance, o.lobes, cache);
+  *stated = std::max(material.gloss.error, material.base.error);
+  std::vector<float> basis(CoefficientCount(64));
+  double worst = 0;
+  for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
+    if (s.mesh.patches[s.mesh.node_patch[n]].material != block) continue;
+    double error2 = 0, norm2 = 0;
+    for (int i = 0; i < 32; ++i) {
+      for (int j = 0; j < 8; ++j) {
+        const double rho = std::sqrt((i + 0.5) / 32), phi = 2 * kPi * (j + 0.5) / 8;
+        const Vec3 wo(float(rho * std::cos(phi)), float(rho * std::sin(phi)), float(std::sqrt(1 - rho * rho)));
+        const double a = material.Albedo(wo.z())[0], off = s.total.Radiance(n, wo, basis.data())[0] - a;
+        error2 += off * off;
+        norm2 += a * a;
+      }
+    }
+    worst = std::max(worst, std::sqrt(error2 / norm2));
+  }
+  return worst;
+}
+
+void Furnaces() {
+  std::printf("| closed room, emission 1, albedo 0.5 | nodes | mean radiance (2) | worst node |\n|---|---|---|---|\n");
+  for (const bool block : {false, true}) {
+    for (const float edge : {1.0f, 0.5f, 0.25f}) {
+      const NodeError e = Furnace(edge, block);
+      std::printf("| %s | %zu | %.4f | %.2f %% |\n", block ? "with a floating block" : "empty", e.nodes, e.mean, 100 * e.worst);
+    }
+  }
+  std::printf("\n| block in a white furnace | stated error | worst node, lobe against a(wo) |\n|---|---|---|\n");
+  for (const float roughness : {1.0f, 0.5f, 0.3f}) {
+    double stated = 0;
+    const double worst = GlossFurnace(Metal(roughness), &stated);
+    std::printf("| metal, roughness %.1f | %.1f %% | %.2f %% |\n", roughness, 100 * stated, 100 * worst);
+  }
+  double stated = 0;
+  const double worst = GlossFurnace(Phong{Rgb::Constant(0.8f), 20}, &stated);
+  std::printf("| Phong 20 | %.1f %% | %.2f %% |\n", 100 * stated, 100 * worst);
+}
+
+void FormFactors() {
+  const double parallel = 2 / kPi * (std::log(std::sqrt(4.0 / 3)) + 2 * std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) - kPi / 2);
+  const double upright = 1 / kPi * (kPi / 2 - std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) + 0.25 * std::log(0.75));
+  std::printf("| unit squares | closed form | edge 0.25 | 0.1 | 0.05 |\n|---|---|---|---|---|\n");
+  for (const bool is_parallel : {true, false}) {
+    const double exact = is_parallel ? parallel : upright;
+    std::printf("| %s | %.5f |", is_parallel ? "parallel" : "perpendicular", exact);
+    for (const float edge : {0.25f, 0.1f, 0.05f}) {
+      test::SceneBuilder b;
+      const uint32_t lamp = b.AddEmitter(Rgb::Constant(1)), grey = b.AddLambert(Rgb::Constant(0.5f));
+      if (is_parallel) {
+        b.AddQuad({0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}, lamp);
+      } else {
+        b.AddQuad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, lamp);   // faces +x
+      }
+      b.AddQuad({0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}, grey);
+      SolveOptions o;
+      o.mesh.max_edge = edge;
+      o.max_steps = 0;
+      const double f = Solve(b.Build(), o).ledger.delivered[0] / kPi;
+      std::printf(" %.5f (%+.2f %%) |", f, 100 * (f / exact - 1));
+    }
+    std::printf("\n");
+  }
+}
+
+struct Trial {
+  Solution solution;
+  double cpu;
+};
+Trial SolveFile(const std::string& name, const SolveOptions& o) {
+  Scene scene = ReadGltfScene(kTests + "/scenes/" + name + ".glb");
+  const double start = CpuSeconds();
+  Solution s = Solve(std::move(scene), o);
+  return {std::move(s), CpuSeconds() - start};
+}
+
+// "pixel / block" of each view that has references.
+std::string Errors(const std::string& name, const Solution& s, double* cpu) {
+  std::string out;
+  const double start = CpuSeconds();
+  const Renderer renderer(s);
+  for (const Camera& camera : s.scene.cameras) {
+    const std::string truth = kTests + "/truth/" + name + "." + camera.name;
+    const Image a = ReadExr(truth + ".a.exr"), b = ReadExr(truth + ".b.exr");
+    const Mask mask = ReadPngMask(truth + ".mask.png");
+    RenderOptions view;
+    view.width = a.width;
+    view.height = a.height;
+    const Image picture = renderer.Render(CameraView(camera, a.width, a.height), view, nullptr);
+    const Comparison c = Compare(picture, a, &b, &mask);
+    char text[64];
+    std::snprintf(text, sizeof text, " %.2f / %.2f |", 100 * c.pixel_error, 100 * c.block_error);
+    out += text;
+  }
+  *cpu = (CpuSeconds() - start) / double(s.scene.cameras.size());
+  return out;
+}
+
+void Row(const std::string& label, const std::string& scene, const SolveOptions& o) {
+  const Trial t = SolveFile(scene, o);
+  double view = 0;
+  const std::string errors = Errors(scene, t.solution, &view);
+  std::printf("| %s | %s | %zu | %.1f | %.2f |%s %.2f %% |\n", scene.c_str(), label.c_str(),
+              t.solution.mesh.node_count(), t.cpu, view, errors.c_str(), 100 * t.solution.ledger.RelativeImbalance());
+  std::fflush(stdout);
+}
+
+void Header(const char* what) {
+  std::printf("| scene | %s | nodes | solve, CPU s | view, CPU s | view0 pixel / block %% | view1 pixel / block %% | imbalance |\n"
+              "|---|---|---|---|---|---|---|---|\n", what);
+}
+
+const char* const kBoxes[] = {"cornell_diffuse", "cornell_glossy"};
+
+void Cornell() {
+  Header("edge");
+  for (const char* scene : kBoxes) {
+    for (const float edge : {1.6f, 0.8f, 0.4f, 0.2f}) {
+      SolveOptions o;
+      o.mesh.max_edge = edge;
+      char label[16];
+      std::snprintf(label, sizeof label, "%.1f m", double(edge));
+      Row(label, scene, o);
+    }
+  }
+}
+
+template <typename T>
+void Sweep(const char* what, const std::vector<T>& values, const std::function<void(SolveOptions&, T)>& set,
+           const std::vector<const char*>& scenes) {
+  Header(what);
+  for (const char* scene : scenes) {
+    for (const T value : values) {
+      SolveOptions o;
+      set(o, value);
+      char label[32];
+      std::snprintf(label, sizeof label, "%g", double(value));
+      Row(label, scene, o);
+    }
+  }
+}
+
+void LightSamples() {
+  Sweep<int>("light samples", {8, 16, 32, 64, 128, 256}, [](SolveOptions& o, int v) { o.light_samples = v; }, {kBoxes[0]});
+}
+void DeltaAreas() {
+  Sweep<int>("delta areas", {32, 64, 128, 256, 512, 1024}, [](SolveOptions& o, int v) { o.delta_areas = v; }, {kBoxes[0], kBoxes[1]});
+}
+void Portions() {
+  Sweep<double>("step fraction", {1, 0.9, 0.5, 0.25}, [](SolveOptions& o, double v) { o.step_fraction = v; }, {kBoxes[0]});
+}
+void Border() {
+  Sweep<double>("border inset", {0.001, 0.02, 0.1, 0.3}, [](SolveOptions& o, double v) { o.mesh.border_inset = float(v); }, {kBoxes[0]});
+}
+void LobeError() {
+  Sweep<double>("lobe error, lmax 20", {0.5, 0.3, 0.2, 0.1, 0.05}, [](SolveOptions& o, double v) { o.lobes.error = v; }, {kBoxes[1]});
+  Sweep<int>("lmax, lobe error 10 %", {0, 4, 8, 12, 16, 20, 24}, [](SolveOptions& o, int v) { o.lobes.l_max = v; }, {kBoxes[1]});
+}
+void Residual() {
+  Sweep<double>("residual", {0.1, 0.01, 1e-3, 1e-4}, [](SolveOptions& o, double v) { o.residual = v; }, {kBoxes[0]});
+}
+
+// One thread: gathering emission and the first reflected step, against Embree alone over the very same rays.
+void Split() {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  std::printf("| scene | rays | million rays/s, Embree alone | gathering over Embree alone, median of 5 | cutting and lobe reads | rays | accumulation |\n"
+              "|---|---|---|---|---|---|---|\n");
+  for (const char* name : kBoxes) {
+    SolveOptions o;
+    o.max_steps = 0;
+    const Solution s = SolveFile(name, o).solution;
+    const RayTracer tracer(s.scene);
+    TableCache cache;
+    std::vector<MaterialLobes> materials;
+    for (const auto& m : s.scene.materials) materials.emplace_back(m.reflectance, o.lobes, cache);
+    const ShootingField emission(s.mesh, FindEmitters(s.scene));
+    const ShootingField reflected(s.scene, s.mesh, s.hidden, s.unshot);
+    Receiver receiver(s.mesh, tracer, materials);
+    std::vector<float> out(size_t(3) * 2 * CoefficientCount(64));
+    std::vector<std::vector<Ray>> rays;
+    Received timed_sum;
+    uint64_t count = 0;
+    const auto gather = [&](bool record, bool timed) {
+      for (const auto* field : {&emission, &reflected}) {
+        for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
+          if (s.hidden[n]) continue;
+          std::fill(out.begin(), out.end(), 0.0f);
+          const Received r = receiver.Gather(n, *field, field == &emission ? o.light_samples : o.delta_areas,
+                                             field == &emission ? 0.0f : s.direct.Flux(n).sum(), 1, out.data(), timed);
+          timed_sum.seconds_cutting += r.seconds_cutting;
+          timed_sum.seconds_rays += r.seconds_rays;
+          timed_sum.seconds_accumulating += r.seconds_accumulating;
+          if (record) {
+            rays.emplace_back(receiver.last_rays().begin(), receiver.last_rays().end());
+            count += r.rays;
+          }
+        }
+      }
+    };
+    gather(true, true);
+    const double whole = timed_sum.seconds_cutting + timed_sum.seconds_rays + timed_sum.seconds_accumulating;
+    std::vector<double> ratios, rates;
+    for (int run = 0; run < 5; ++run) {
+      const double t0 = CpuSeconds();
+      gather(false, false);
+      const double t1 = CpuSeconds();
+      std::vector<uint8_t> occluded;
+      for (const auto& r : rays) {
+        occluded.resize(r.size());
+        tracer.Occluded(r, occluded, true);
+      }
+      const double t2 = CpuSeconds();
+      ratios.push_back((t1 - t0) / (t2 - t1));
+      rates.push_back(double(count) / (t2 - t1) * 1e-6);
+    }
+    std::sort(ratios.begin(), ratios.end());
+    std::sort(rates.begin(), rates.end());
+    std::printf("| %s | %.2f M | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n", name, double(count) * 1e-6, rates[2], ratios[2],
+                100 * timed_sum.seconds_cutting / whole, 100 * timed_sum.seconds_rays / whole,
+                100 * timed_sum.seconds_accumulating / whole);
+  }
+}
+
+const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {
+    {"basis", Basis},       {"degree", Degree},       {"knots", Knots},         {"furnaces", Furnaces},
+    {"form-factors", FormFactors}, {"cornell", Cornell}, {"light-samples", LightSamples},
+    {"delta-areas", DeltaAreas},   {"step-fraction", Portions}, {"border", Border},
+    {"lobe-error", LobeError},     {"residual", Residual},      {"split", Split}};
+
+}  // namespace
+}  // namespace lobe
+
+int main(int argc, char** argv) {
+  for (const auto& [name, print] : lobe::kTopics) {
+    if (argc == 2 && name == argv[1]) {
+      print();
+      return 0;
+    }
+  }
+  std::fprintf(stderr, "usage, from the project's root: figures TOPIC, with TOPIC one of");
+  for (const auto& topic : lobe::kTopics) std::fprintf(stderr, " %s", topic.first.c_str());
+  std::fprintf(stderr, "\n");
+  return 2;
+}

@@ -1,0 +1,96 @@
+#include "solver/exposure.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/input_error.h"
+#include "scene/tessellate.h"
+#include "solver/solution.h"
+#include "tests/support/scene_builder.h"
+
+namespace lobe {
+namespace {
+
+using test::SceneBuilder;
+
+// A room with a lamp; `boxes` of the given sidedness standing in it.
+Scene RoomWithBox(bool double_sided, float y0) {
+  SceneBuilder b;
+  const uint32_t wall = b.AddMaterial("wall", Lambert{}, Rgb::Zero(), double_sided);
+  b.AddBox({0, 0, 0}, {3, 3, 3}, wall, true);
+  b.AddBox({1, y0, 1}, {2, y0 + 1, 2}, b.AddMaterial("box", Lambert{}, Rgb::Zero(), double_sided));
+  b.AddQuad({1, 2.9f, 1}, {2, 2.9f, 1}, {2, 2.9f, 2}, {1, 2.9f, 2}, b.AddEmitter(Rgb::Constant(1)));
+  return b.Build();
+}
+
+TEST(ExposureTest, InsideOfAClosedDoubleSidedBoxIsUnlit) {
+  const Scene scene = RoomWithBox(true, 1);
+  const auto lit = FindLitSides(scene, RayTracer(scene), 1);
+  for (size_t f = 0; f < scene.faces.size(); ++f) {
+    if (scene.material(scene.faces[f]).emits()) continue;
+    EXPECT_TRUE(lit[2 * f]) << "front of face " << f;
+    EXPECT_FALSE(lit[2 * f + 1]) << "back of face " << f;
+  }
+}
+
+TEST(ExposureTest, NodesUnderABoxAreHiddenAndOthersAreNot) {
+  for (const bool double_sided : {false, true}) {
+    for (const float y0 : {0.0f, -0.01f}) {   // standing, and sunk a centimetre
+      const Scene scene = RoomWithBox(double_sided, y0);
+      const RayTracer tracer(scene);
+      TessellateOptions options;
+      options.max_edge = 0.3f;
+      const Mesh mesh = Tessellate(scene, options, FindLitSides(scene, tracer, 1));
+      const Exposure e = FindExposure(scene, mesh, tracer, 1);
+      for (uint32_t n = 0; n < mesh.node_count(); ++n) {
+        const Vec3& p = mesh.node_position[n];
+        const auto& patch = mesh.patches[mesh.node_patch[n]];
+        if (scene.materials[patch.material].name != "wall") continue;
+        const bool under = p.y() < 0.001f && p.x() > 1.01f && p.x() < 1.99f && p.z() > 1.01f && p.z() < 1.99f;
+        const bool clear = p.y() > 0.001f || p.x() < 0.99f || p.x() > 2.01f || p.z() < 0.99f || p.z() > 2.01f;
+        if (under) {
+          EXPECT_TRUE(e.hidden[n]) << p.transpose();
+        }
+        // The ceiling right above the lamp sees little but the lamp's black back: hidden or not is all one.
+        if (clear && p.y() < 2.999f) {
+          EXPECT_FALSE(e.hidden[n]) << p.transpose();
+        }
+      }
+    }
+  }
+}
+
+TEST(ExposureTest, ProbesOfAClosedRoomLoseNothing) {
+  const Scene scene = RoomWithBox(false, 1);
+  const RayTracer tracer(scene);
+  const Mesh mesh = Tessellate(scene, {}, FindLitSides(scene, tracer, 1));
+  const Exposure e = FindExposure(scene, mesh, tracer, 1);
+  EXPECT_EQ(e.emission_escaped, 0);
+  for (const auto& ray : e.lost) EXPECT_FALSE(ray.escaped);
+}
+
+TEST(ExposureTest, EmissionOfALampInTheOpenEscapes) {
+  SceneBuilder b;
+  b.AddQuad({0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}, b.AddEmitter(Rgb::Constant(1)));
+  const Scene scene = b.Build();
+  const RayTracer tracer(scene);
+  const Mesh mesh = Tessellate(scene, {}, FindLitSides(scene, tracer, 1));
+  EXPECT_EQ(FindExposure(scene, mesh, tracer, 1).emission_escaped, 1);
+}
+
+TEST(ExposureTest, HiddenNodesHaveNoWeight) {
+  Mesh mesh;
+  mesh.elements = {{0, 1, 2}};
+  const Mesh::Location where{0, {0.5f, 0.3f, 0.2f}};
+  const NodeWeights all = Interpolate(mesh, {0, 0, 0}, where);
+  EXPECT_EQ(all.count, 3);
+  const NodeWeights two = Interpolate(mesh, {1, 0, 0}, where);
+  ASSERT_EQ(two.count, 2);
+  EXPECT_NEAR(two.weight[0], 0.6f, 1e-6);
+  EXPECT_NEAR(two.weight[1], 0.4f, 1e-6);
+  EXPECT_EQ(Interpolate(mesh, {1, 1, 1}, where).count, 0);
+  const NodeWeights at_hidden = Interpolate(mesh, {1, 0, 0}, {0, {1, 0, 0}});
+  EXPECT_NEAR(at_hidden.weight[0] + at_hidden.weight[1], 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace lobe
