@@ -25,11 +25,10 @@ struct LongEdge {
 
 class Bisector {
  public:
-  Bisector(std::vector<Vec3> positions, std::vector<Vec3> normals, float max_edge)
-      : max_edge_(max_edge) {
+  Bisector(std::vector<Vec3> positions, std::vector<Vec3> normals, float max_edge) : max_edge_(max_edge) {
     out_.position = std::move(positions);
     out_.normal = std::move(normals);
-    omerr().disable();   // it reports refused triangles, which we expect
+    omerr().disable();  // it reports refused triangles, which we expect
     for (size_t i = 0; i < out_.position.size(); ++i) mesh_.new_vertex();
   }
 
@@ -76,7 +75,7 @@ class Bisector {
   }
 
   void Split(EdgeHandle edge) {
-    constexpr size_t kMostFaces = size_t{1} << 29;   // halfedges are numbered by int
+    constexpr size_t kMostFaces = size_t{1} << 29;  // halfedges are numbered by int
     if (mesh_.n_faces() >= kMostFaces) throw std::length_error("more than 2^29 triangles in one surface");
 
     // Of each triangle (p0, p1, p2) at the edge p1-p2, the halfedges into and out of p0 stay, whatever
@@ -97,8 +96,8 @@ class Bisector {
     const HalfedgeHandle h = mesh_.halfedge_handle(edge, 0);
     const uint32_t a = static_cast<uint32_t>(mesh_.from_vertex_handle(h).idx());
     const uint32_t b = static_cast<uint32_t>(mesh_.to_vertex_handle(h).idx());
-    const uint32_t middle = AddVertex((out_.position[a] + out_.position[b]) * 0.5f,
-                                      (out_.normal[a] + out_.normal[b]) * 0.5f);
+    const uint32_t middle =
+        AddVertex((out_.position[a] + out_.position[b]) * 0.5f, (out_.normal[a] + out_.normal[b]) * 0.5f);
     mesh_.split_edge(edge, VertexHandle(static_cast<int>(middle)));
     leaf_.resize(mesh_.n_faces());
 
@@ -115,9 +114,9 @@ class Bisector {
       leaf_[mesh_.face_handle(cut.out_of_apex).idx()] = child;
       leaf_[mesh_.face_handle(cut.into_apex).idx()] = child + 1;
 
-      const HalfedgeHandle half1 = mesh_.next_halfedge_handle(cut.out_of_apex);   // p1 to the middle
-      const HalfedgeHandle half2 = mesh_.prev_halfedge_handle(cut.into_apex);     // the middle to p2
-      Enqueue(mesh_.edge_handle(mesh_.next_halfedge_handle(half1)));              // the cut itself
+      const HalfedgeHandle half1 = mesh_.next_halfedge_handle(cut.out_of_apex);  // p1 to the middle
+      const HalfedgeHandle half2 = mesh_.prev_halfedge_handle(cut.into_apex);    // the middle to p2
+      Enqueue(mesh_.edge_handle(mesh_.next_halfedge_handle(half1)));             // the cut itself
       if (i == 0) {
         Enqueue(mesh_.edge_handle(half1));
         Enqueue(mesh_.edge_handle(half2));
@@ -127,7 +126,7 @@ class Bisector {
 
   double max_edge_;
   TriMesh mesh_;
-  std::vector<uint32_t> leaf_;   // cell of each OpenMesh face
+  std::vector<uint32_t> leaf_;  // cell of each OpenMesh face
   std::priority_queue<LongEdge> queue_;
   Bisection out_;
 };

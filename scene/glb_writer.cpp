@@ -137,13 +137,11 @@ std::string PercentEncoded(const std::string& name) {
 
 }  // namespace
 
-GlbWriter::GlbWriter() {
-  document["asset"] = {{"version", "2.0"}, {"generator", "Lobe"}};
-}
+GlbWriter::GlbWriter() { document["asset"] = {{"version", "2.0"}, {"generator", "Lobe"}}; }
 
 int GlbWriter::AddView(const void* data, size_t bytes, Target target) {
   if (bytes == 0) throw std::invalid_argument("GlbWriter: glTF has no empty accessors");
-  buffer_.resize((buffer_.size() + 3) / 4 * 4);   // alignment of the largest component, section 3.6.2.4
+  buffer_.resize((buffer_.size() + 3) / 4 * 4);  // alignment of the largest component, section 3.6.2.4
   nlohmann::json view = {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes}};
   if (target != Target::kNone) view["target"] = static_cast<int>(target);
   const auto* begin = static_cast<const uint8_t*>(data);
@@ -153,12 +151,14 @@ int GlbWriter::AddView(const void* data, size_t bytes, Target target) {
 }
 
 int GlbWriter::AddFloats(std::span<const float> values, const std::string& type, Target target, bool bounds) {
-  static const nlohmann::json kComponents = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+  static const nlohmann::json kComponents = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
   const size_t components = kComponents.at(type);
-  if (values.size() % components != 0) throw std::invalid_argument("GlbWriter: not a whole number of " + type);
+  if (values.size() % components != 0)
+    throw std::invalid_argument("GlbWriter: not a whole number of " + type);
   const int view = AddView(values.data(), values.size_bytes(), target);
-  nlohmann::json accessor = {{"bufferView", view}, {"componentType", 5126}, {"type", type},
-                             {"count", values.size() / components}};
+  nlohmann::json accessor = {
+      {"bufferView", view}, {"componentType", 5126}, {"type", type}, {"count", values.size() / components}};
   if (bounds) {
     std::vector<float> min(components, std::numeric_limits<float>::infinity()), max(components, -min[0]);
     for (size_t i = 0; i < values.size(); ++i) {
@@ -236,7 +236,7 @@ void WriteFileAtomically(const std::string& path, std::span<const uint8_t> bytes
 
 void CheckWritable(const std::string& path) {
   const fs::path target = Target(path);
-  if (IsSpecial(target)) {   // opening a pipe would wait for its reader
+  if (IsSpecial(target)) {  // opening a pipe would wait for its reader
     if (access(target.c_str(), W_OK) != 0) FailToWrite(path, errno);
     return;
   }

@@ -33,7 +33,8 @@ size_t ComponentBytes(size_t component_type) {
 }
 
 bool IsUnsignedInteger(size_t component_type) {
-  return component_type == kUnsignedByte || component_type == kUnsignedShort || component_type == kUnsignedInt;
+  return component_type == kUnsignedByte || component_type == kUnsignedShort ||
+         component_type == kUnsignedInt;
 }
 
 /// MAT2 and MAT3 have padded columns, and nothing we read is of such type.

@@ -22,7 +22,7 @@ class GltfAccessors {
   std::vector<uint32_t> ReadIndices(int accessor, const std::string& what) const;
 
  private:
-  struct Elements;   // laid out in a buffer view, known to lie inside it
+  struct Elements;  // laid out in a buffer view, known to lie inside it
 
   GltfJson Accessor(int accessor, const std::string& what) const;
   Elements Locate(const GltfJson& owner, size_t count, size_t element_bytes, bool may_stride) const;

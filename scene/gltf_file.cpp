@@ -28,7 +28,8 @@ std::vector<uint8_t> ReadWholeFile(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
-  if (std::filesystem::is_directory(status)) throw InputError(path + ": is a directory, expected a glTF file");
+  if (std::filesystem::is_directory(status))
+    throw InputError(path + ": is a directory, expected a glTF file");
   if (!std::filesystem::is_regular_file(status)) throw InputError(path + ": is not a regular file");
   std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
@@ -45,9 +46,9 @@ uint32_t Word(const uint8_t* p) {
   return word;
 }
 
-constexpr uint32_t kGlbMagic = 0x46546C67;    // "glTF", glTF 2.0 section 4.4.2
-constexpr uint32_t kJsonChunk = 0x4E4F534A;   // "JSON", section 4.4.3
-constexpr uint32_t kBinaryChunk = 0x004E4942; // "BIN"
+constexpr uint32_t kGlbMagic = 0x46546C67;     // "glTF", glTF 2.0 section 4.4.2
+constexpr uint32_t kJsonChunk = 0x4E4F534A;    // "JSON", section 4.4.3
+constexpr uint32_t kBinaryChunk = 0x004E4942;  // "BIN"
 
 /// Finds the JSON and binary chunks of a .glb; for a .gltf all of it is JSON.
 void FindChunks(const std::string& path, const std::vector<uint8_t>& file, Bytes* json, Bytes* binary) {
@@ -125,10 +126,11 @@ std::vector<uint8_t> FetchBuffer(const std::string& path, const GltfJson& buffer
   const std::string shown = uri.size() > 60 ? uri.substr(0, 60) + "..." : uri;
   const auto folder = std::filesystem::path(path).parent_path();
   const size_t declared = buffer.RequiredWhole("byteLength");
-  size_t stored = 0;   // tinygltf insists on this, the specification lets there be more than declared
+  size_t stored = 0;  // tinygltf insists on this, the specification lets there be more than declared
   if (uri.starts_with("data:")) {
     if (!tinygltf::IsDataURI(uri)) {
-      buffer.Fail("its data URI '" + shown + "' has an unknown media type, expected "
+      buffer.Fail("its data URI '" + shown +
+                  "' has an unknown media type, expected "
                   "application/octet-stream or application/gltf-buffer in base64");
     }
     const std::string base64 = uri.substr(uri.find(',') + 1);
@@ -140,9 +142,10 @@ std::vector<uint8_t> FetchBuffer(const std::string& path, const GltfJson& buffer
       buffer.Fail("its uri is '" + shown + "'; only files beside the scene and data URIs are read");
     }
     std::string decoded;
-    for (size_t i = 0; i < uri.size(); ++i) {   // percent-encoding, RFC 3986 section 2.1
+    for (size_t i = 0; i < uri.size(); ++i) {  // percent-encoding, RFC 3986 section 2.1
       int byte = 0;
-      if (uri[i] == '%' && i + 2 < uri.size() && std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
+      if (uri[i] == '%' && i + 2 < uri.size() &&
+          std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
         decoded += static_cast<char>(byte);
         i += 2;
       } else {
@@ -217,7 +220,8 @@ GltfFile::GltfFile(const std::string& path, std::vector<uint8_t> bytes) : impl_(
       }
       buffers[i] = binary.first(length);
     }
-    // Else a placeholder, as compressed files have (EXT_meshopt_compression); an accessor that needs it fails.
+    // Else a placeholder, as compressed files have (EXT_meshopt_compression); an accessor that needs it
+    // fails.
   }
   g.accessors.emplace(document, std::move(buffers));
 }

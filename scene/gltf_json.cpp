@@ -44,7 +44,7 @@ bool IsWholeWithin(const nlohmann::json& value, size_t max) {
 }  // namespace
 
 std::string Shown(const nlohmann::json& value) {
-  constexpr size_t kLongest = 60;   // chosen: a sentence stays on a line or two
+  constexpr size_t kLongest = 60;  // chosen: a sentence stays on a line or two
   std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;

@@ -61,8 +61,8 @@ class GltfJson {
   GltfJson() = default;
   const nlohmann::json* value_ = nullptr;
   const std::string* file_ = nullptr;
-  std::string element_;   // "material 2 'oak'"
-  std::string prefix_;    // "KHR_materials_ior."
+  std::string element_;  // "material 2 'oak'"
+  std::string prefix_;   // "KHR_materials_ior."
 };
 
 /// A value as messages show it: JSON, cut off if long.

@@ -6,7 +6,7 @@ namespace {
 
 Eigen::Affine3d LocalTransform(const GltfJson& node) {
   Eigen::Affine3d local = Eigen::Affine3d::Identity();
-  Eigen::Matrix4d matrix;   // column-major, as in glTF
+  Eigen::Matrix4d matrix;  // column-major, as in glTF
   if (node.Numbers("matrix", 16, matrix.data())) {
     if (!matrix.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1))) {
       node.FailValue("matrix", "0, 0, 0, 1 as its last row");
@@ -22,7 +22,7 @@ Eigen::Affine3d LocalTransform(const GltfJson& node) {
     node.FailValue("rotation", "a unit quaternion");
   }
   local.translate(translation);
-  local.rotate(Eigen::Quaterniond(rotation).normalized());   // coefficients x, y, z, w in both
+  local.rotate(Eigen::Quaterniond(rotation).normalized());  // coefficients x, y, z, w in both
   local.scale(scale);
   return local;
 }
@@ -40,7 +40,8 @@ std::vector<int> Roots(const GltfJson& document, std::vector<std::string>* warni
   }
   std::vector<bool> is_child(node_count);
   for (size_t i = 0; i < node_count; ++i) {
-    for (int child : document.Entry("nodes", i, "node").Indices("children", node_count)) is_child[child] = true;
+    for (int child : document.Entry("nodes", i, "node").Indices("children", node_count))
+      is_child[child] = true;
   }
   std::vector<int> roots;
   for (size_t i = 0; i < node_count; ++i) {
@@ -61,7 +62,7 @@ std::vector<GltfNode> ReadNodes(const GltfFile& file, std::vector<std::string>* 
     int node;
     Eigen::Affine3d parent;
   };
-  std::vector<Pending> stack;   // depths of files from outside are not for the call stack
+  std::vector<Pending> stack;  // depths of files from outside are not for the call stack
   const auto push = [&stack](const std::vector<int>& nodes, const Eigen::Affine3d& parent) {
     for (auto i = nodes.rbegin(); i != nodes.rend(); ++i) stack.push_back({*i, parent});
   };

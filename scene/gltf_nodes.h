@@ -13,9 +13,9 @@ namespace lobe {
 
 /// A node of the default scene, placed in the world.
 struct GltfNode {
-  std::string name;              ///< its own, or "node 3"
+  std::string name;  ///< its own, or "node 3"
   Eigen::Affine3d to_world;
-  int mesh = -1, camera = -1;    ///< -1: none
+  int mesh = -1, camera = -1;  ///< -1: none
 };
 
 inline GltfJson Document(const GltfFile& file) { return GltfJson(file.path(), file.json()); }

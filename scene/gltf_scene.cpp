@@ -12,14 +12,14 @@ namespace lobe {
 
 namespace {
 
-constexpr int kTriangles = 4, kStrip = 5, kFan = 6;   // glTF 2.0 section 5.24.4, mesh.primitive.mode
+constexpr int kTriangles = 4, kStrip = 5, kFan = 6;  // glTF 2.0 section 5.24.4, mesh.primitive.mode
 
 using Triangle = std::array<uint32_t, 3>;
 
 /// A mesh primitive as in the file, in its own space.
 struct Primitive {
-  std::vector<float> positions;        // x, y, z
-  std::vector<float> normals;          // empty: flat
+  std::vector<float> positions;  // x, y, z
+  std::vector<float> normals;    // empty: flat
   std::vector<Triangle> triangles;
   int material = -1;
 };
@@ -69,7 +69,7 @@ class SceneReader {
   void CheckExtensions() {
     static const std::set<std::string> kRead = {
         "KHR_materials_emissive_strength", "KHR_materials_specular", "KHR_materials_ior",
-        "KHR_mesh_quantization", "LOBE_materials_brdf", "LOBE_directional_radiance"};
+        "KHR_mesh_quantization",           "LOBE_materials_brdf",    "LOBE_directional_radiance"};
     static const std::set<std::string> kChangeGeometry = {
         "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
         "EXT_mesh_gpu_instancing"};
@@ -95,7 +95,8 @@ class SceneReader {
   void WarnOfCamera(int index) {
     const GltfJson camera = document_.Entry("cameras", index, "camera");
     const std::string type = camera.String("type");
-    if (type != "perspective") Warn(camera.element() + ": type " + type + " is not read; the camera is left out");
+    if (type != "perspective")
+      Warn(camera.element() + ": type " + type + " is not read; the camera is left out");
   }
 
   void WarnOfDropped(int mesh, const Dropped& counts) {
@@ -113,7 +114,8 @@ class SceneReader {
   bool ReadPrimitive(const GltfJson& json, Primitive* primitive) {
     const int mode = static_cast<int>(json.Whole("mode", kTriangles, 6));
     if (mode < kTriangles) {
-      Warn(json.element() + ": mode " + std::to_string(mode) + " (points or lines) is not read; it is left out");
+      Warn(json.element() + ": mode " + std::to_string(mode) +
+           " (points or lines) is not read; it is left out");
       return false;
     }
     const GltfJson attributes = json.Object("attributes");
@@ -146,9 +148,9 @@ class SceneReader {
       indices = file_.ReadIndices(accessor, json.element() + ": indices");
       for (size_t i = 0; i < indices.size(); ++i) {
         if (indices[i] >= vertex_count) {
-          json.Fail("indices (accessor " + std::to_string(accessor) + "): index " + std::to_string(i) + " is " +
-                    std::to_string(indices[i]) + ", expected below the " + std::to_string(vertex_count) +
-                    " vertices");
+          json.Fail("indices (accessor " + std::to_string(accessor) + "): index " + std::to_string(i) +
+                    " is " + std::to_string(indices[i]) + ", expected below the " +
+                    std::to_string(vertex_count) + " vertices");
         }
       }
     } else {
@@ -161,8 +163,10 @@ class SceneReader {
     }
     primitive->triangles = Assemble(indices, mode);
     primitive->material = json.Index("material", material_count_);
-    if (json.Count("targets") > 0) Warn(json.element() + ": morph targets are not read; the base shape is used");
-    if (attributes.Has("COLOR_0")) Warn(json.element() + ": COLOR_0 is not read; the material's colour is used");
+    if (json.Count("targets") > 0)
+      Warn(json.element() + ": morph targets are not read; the base shape is used");
+    if (attributes.Has("COLOR_0"))
+      Warn(json.element() + ": COLOR_0 is not read; the material's colour is used");
     return true;
   }
 
@@ -199,7 +203,8 @@ class SceneReader {
     }
     const Eigen::Matrix3d linear = node.to_world.linear();
     const bool mirrors = linear.determinant() < 0;
-    // Normals go by the inverse transpose: the matrix of cofactors, but for a factor of the determinant's sign.
+    // Normals go by the inverse transpose: the matrix of cofactors, but for a factor of the determinant's
+    // sign.
     Eigen::Matrix3d cofactors;
     for (int i = 0; i < 3; ++i) {
       cofactors.col(i) = linear.col((i + 1) % 3).cross(linear.col((i + 2) % 3)) * (mirrors ? -1 : 1);
@@ -266,7 +271,7 @@ class SceneReader {
 
   uint32_t DefaultMaterial() {
     if (scene_.materials.size() == material_count_) {
-      Material material;   // glTF 2.0 section 3.7.2.1: as an empty material
+      Material material;  // glTF 2.0 section 3.7.2.1: as an empty material
       material.name = "default";
       scene_.materials.push_back(material);
     }
@@ -276,7 +281,7 @@ class SceneReader {
   const GltfFile& file_;
   GltfJson document_;
   Scene scene_;
-  size_t material_count_ = 0;   // of the file, without ours
+  size_t material_count_ = 0;  // of the file, without ours
   std::map<int, std::vector<Primitive>> meshes_;
   std::map<int, Dropped> dropped_;
 };
@@ -314,7 +319,8 @@ std::vector<Camera> ReadCameras(const GltfFile& file) {
     const std::string own_name = json.String("name");
     const std::string name = own_name.empty() ? node.name : own_name;
     camera.name = name;
-    for (int copy = 2; !names.insert(camera.name).second; ++copy) camera.name = name + "-" + std::to_string(copy);
+    for (int copy = 2; !names.insert(camera.name).second; ++copy)
+      camera.name = name + "-" + std::to_string(copy);
     cameras.push_back(camera);
   }
   return cameras;

@@ -22,7 +22,7 @@ constexpr uint32_t kAllMasks = 0xffffffffu;
 /// made here: the least t and of equals the first face, by a filter that sees all that could be chosen.
 struct Query {
   static constexpr int kMostRays = 16;
-  RTCIntersectContext context;   // first, to get from Embree's pointer to ours
+  RTCIntersectContext context;  // first, to get from Embree's pointer to ours
   std::array<float, kMostRays> t, t_max;
   std::array<uint32_t, kMostRays> primitive;
 
@@ -113,7 +113,7 @@ struct Packet<16> {
 struct RayTracer::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  int packet_width = 1;   // widest the processor is made for
+  int packet_width = 1;  // widest the processor is made for
   RepeatedFaces repeated;
 
   ~Impl() {
@@ -129,9 +129,8 @@ struct RayTracer::Impl {
       RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
       void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                3 * sizeof(float), from.positions.size());
-      auto* corner = static_cast<uint32_t*>(
-          rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                  repeated.kept.size()));
+      auto* corner = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+          geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), repeated.kept.size()));
       if (vertices && corner) {
         static_assert(sizeof(Vec3) == 3 * sizeof(float));
         std::memcpy(vertices, from.positions.data(), from.positions.size() * sizeof(Vec3));
@@ -151,7 +150,7 @@ struct RayTracer::Impl {
     if (error != RTC_ERROR_NONE) {
       throw InputError(from.path + ": Embree cannot prepare its triangles, error " + std::to_string(error));
     }
-    if (repeated.twins.empty()) repeated.kept = {};   // Embree's numbers are ours
+    if (repeated.twins.empty()) repeated.kept = {};  // Embree's numbers are ours
   }
 
   RayHit MakeHit(uint32_t primitive, float t, float u, float v, float normal_dot_direction) const {
@@ -191,7 +190,7 @@ struct RayTracer::Impl {
     Query query(false);
     RTCRay r = MakeRay(ray).ray;
     rtcOccluded1(scene, &query.context, &r);
-    return r.tfar < 0;   // Embree's mark
+    return r.tfar < 0;  // Embree's mark
   }
 
   template <int width>
@@ -214,9 +213,9 @@ struct RayTracer::Impl {
           hits[begin + i] = {};
           continue;
         }
-        hits[begin + i] = MakeHit(p.hit.primID[i], query.t[i], p.hit.u[i], p.hit.v[i],
-                                  p.hit.Ng_x[i] * p.ray.dir_x[i] + p.hit.Ng_y[i] * p.ray.dir_y[i] +
-                                      p.hit.Ng_z[i] * p.ray.dir_z[i]);
+        hits[begin + i] = MakeHit(
+            p.hit.primID[i], query.t[i], p.hit.u[i], p.hit.v[i],
+            p.hit.Ng_x[i] * p.ray.dir_x[i] + p.hit.Ng_y[i] * p.ray.dir_y[i] + p.hit.Ng_z[i] * p.ray.dir_z[i]);
       }
     }
   }

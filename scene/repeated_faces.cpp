@@ -8,9 +8,9 @@ namespace lobe {
 namespace {
 
 struct Entry {
-  std::array<std::array<float, 3>, 3> position;   // sorted
-  std::array<uint8_t, 3> corner;                  // of the face, in that order
-  bool odd;                                       // as a permutation
+  std::array<std::array<float, 3>, 3> position;  // sorted
+  std::array<uint8_t, 3> corner;                 // of the face, in that order
+  bool odd;                                      // as a permutation
   uint32_t face;
 };
 

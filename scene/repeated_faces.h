@@ -13,12 +13,12 @@ namespace lobe {
 /// A ray meets all of them at once, so one has to stand for all.
 struct RepeatedFaces {
   struct Twin {
-    uint32_t face = kNone;                    ///< kNone: it has none
-    std::array<uint8_t, 3> corner = {};       ///< where the twin's corners are in this face
+    uint32_t face = kNone;               ///< kNone: it has none
+    std::array<uint8_t, 3> corner = {};  ///< where the twin's corners are in this face
   };
-  std::vector<uint32_t> kept;   ///< faces to trace, ascending: of equal ones the first
-  std::vector<Twin> twins;      ///< by face: of a kept one the first that winds the other way. Empty if all
-                                ///< faces are kept
+  std::vector<uint32_t> kept;  ///< faces to trace, ascending: of equal ones the first
+  std::vector<Twin> twins;     ///< by face: of a kept one the first that winds the other way. Empty if all
+                               ///< faces are kept
 };
 
 /// O(n log n) in the number of faces.

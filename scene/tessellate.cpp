@@ -89,7 +89,7 @@ void CheckSize(const Scene& scene, const Eigen::AlignedBox3f& bounds, const std:
 /// Shading normal at a corner of a face, on the front: one that points behind the face is turned, one that
 /// lies in its plane replaced.
 Vec3 CornerNormal(const Scene& scene, const Face& face, int k, const Vec3& geometric) {
-  constexpr float kGrazing = 1e-3f;   // chosen
+  constexpr float kGrazing = 1e-3f;  // chosen
   const Vec3& normal = scene.normals[face.vertex[k]];
   const float cosine = normal.dot(geometric);
   if (!(std::abs(cosine) > kGrazing)) return geometric;
@@ -119,7 +119,8 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
     }
     triangles.push_back(corner);
   }
-  return BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack));
+  return BisectLongEdges(triangles, welder.positions(), welder.normals(),
+                         options.max_edge * (1 + kEdgeSlack));
 }
 
 /// Roots of a group, by connected piece, in order of their first.
@@ -240,7 +241,7 @@ class Layout {
       Vec3d cross = Vec3d::Zero(), centroids = Vec3d::Zero();
       int elements = 0;
       bool flat = true;
-      double best = -1;   // of a border node on a curved surface, see below
+      double best = -1;  // of a border node on a curved surface, see below
     };
     std::vector<Surround> around(count);
     for (uint32_t e = patch->element_begin; e < patch->element_end; ++e) {
@@ -301,7 +302,7 @@ class Layout {
   Mesh& mesh_;
   const TessellateOptions& options_;
   std::vector<uint32_t> node_of_vertex_;
-  std::vector<uint8_t> border_;   // per node of the patch at hand
+  std::vector<uint8_t> border_;  // per node of the patch at hand
 };
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace lobe {
 
 struct TessellateOptions {
-  /// Longest edge of an element (1e-5 of it more is let pass), metres, > 0. Time grows with nodes, nodes with 1 / edge^2.
+  /// Longest edge of an element (1e-5 of it more is let pass), metres, > 0. Time grows with nodes, nodes
+  /// with 1 / edge^2.
   float max_edge = 0.4f;
   /// Corners at one position become one node if their normals differ by less; radians. (chosen)
   float crease_angle = 0.0175f;

@@ -33,16 +33,16 @@ uint32_t Welder::Add(const Vec3& position, const Vec3& normal) {
     low[i] = static_cast<int64_t>(std::floor((p[i] - distance_) / cell_));
     high[i] = static_cast<int64_t>(std::floor((p[i] + distance_) / cell_));
   }
-  uint32_t best = kEnd;   // the first to come over all cells in reach
+  uint32_t best = kEnd;  // the first to come over all cells in reach
   for (int64_t x = low[0]; x <= high[0]; ++x) {
     for (int64_t y = low[1]; y <= high[1]; ++y) {
       for (int64_t z = low[2]; z <= high[2]; ++z) {
         const auto found = first_in_cell_.find(Key({x, y, z}));
         for (uint32_t i = found == first_in_cell_.end() ? kEnd : found->second; i != kEnd; i = next_[i]) {
-          if (i < best &&
-              (positions_[i] - position).cast<double>().cwiseAbs().maxCoeff() <= distance_ &&
+          if (i < best && (positions_[i] - position).cast<double>().cwiseAbs().maxCoeff() <= distance_ &&
               // Equal normals may have a product a rounding error below 1.
-              (normals_[i] == normal || normals_[i].cast<double>().dot(normal.cast<double>()) >= cos_angle_)) {
+              (normals_[i] == normal ||
+               normals_[i].cast<double>().dot(normal.cast<double>()) >= cos_angle_)) {
             best = i;
           }
         }

@@ -30,7 +30,7 @@ class Welder {
   Vec3d origin_;
   double distance_, cell_, cos_angle_;
   std::vector<Vec3> positions_, normals_;
-  std::vector<uint32_t> next_;                          // in the same grid cell
+  std::vector<uint32_t> next_;  // in the same grid cell
   std::unordered_map<uint64_t, uint32_t> first_in_cell_;
 };
 

@@ -9,6 +9,9 @@ namespace {
 // Beyond this many edge lengths a triangle is a point to 0.4 % (docs/validation.md#form-factor).
 constexpr float kFar = 6.0f;
 
+// And to 4 % beyond this many.
+constexpr float kFarEnough = 2.0f;
+
 float LongestEdgeSquared(const std::array<Vec3, 3>& p) {
   return std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
 }
@@ -52,6 +55,16 @@ TriangleLight FarTriangleLight(const Vec3& point, const Vec3& normal, const std:
   const float cos_i = to.dot(normal), cos_o_area = -to.dot(area_normal);
   if (!(r2 > 0) || cos_i <= 0 || cos_o_area <= 0) return {};
   return {cos_i * cos_o_area / (r2 * r2), to / std::sqrt(r2)};
+}
+
+TriangleLight EstimateTriangleLight(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners) {
+  const Vec3 to = (corners[0] + corners[1] + corners[2]) * (1.0f / 3.0f) - point;
+  const bool above = (corners[0] - point).dot(normal) > 0 && (corners[1] - point).dot(normal) > 0 &&
+                     (corners[2] - point).dot(normal) > 0;
+  if (above && to.squaredNorm() > kFarEnough * kFarEnough * LongestEdgeSquared(corners)) {
+    return FarTriangleLight(point, normal, corners);
+  }
+  return ExactTriangleLight(point, normal, corners);
 }
 
 TriangleLight LightOfTriangle(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners) {

@@ -20,7 +20,11 @@ TriangleLight ExactTriangleLight(const Vec3& point, const Vec3& normal, const st
 /// As a point at the centroid: cos_i cos_o A / r^2. Relative error about (size / distance)^2 / 8.
 TriangleLight FarTriangleLight(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners);
 
-/// The one or the other, by distance (docs/validation.md#form-factor).
+/// Good to 4 % of itself, to decide what is worth cutting: the point form from two edge lengths away, unless the
+/// triangle reaches below the horizon.
+TriangleLight EstimateTriangleLight(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners);
+
+/// The exact form near, the point form far, good to 0.4 % (docs/validation.md#form-factor).
 TriangleLight LightOfTriangle(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners);
 
 }  // namespace lobe

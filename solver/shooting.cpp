@@ -31,18 +31,26 @@ constexpr int kMaxDepth = 40;
 // random points, by their kernel cos_i cos_o / r^2 (resampled importance sampling, Talbot et al., EGSR 2005).
 // Points spread evenly over the area would too often be far or on the horizon, and what is far is hidden more
 // often than what is near: light would be lost (docs/validation.md#delta-areas).
+constexpr int kCandidates = 8;
 struct StandInPoint {
   Vec3 barycentrics, position;
 };
 StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, const Vec3& point, const Vec3& normal,
                      RandomStream& random) {
-  constexpr int kCandidates = 8;
+  // Seen small and well above both horizons the kernel is as good as constant: any point will do.
+  const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f) - point;
+  const float distance = middle.norm();
+  const float size2 =
+      std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+  const bool even = size2 < 0.0625f * distance * distance && middle.dot(normal) > 0.3f * distance &&
+                    -middle.dot(cell_normal) > 0.3f * distance;
+  const int candidates = even ? 1 : kCandidates;
   // Candidates follow the plastic-number sequence (Roberts 2018), shifted at random: stratified.
   const float u0 = random.Next(), v0 = random.Next();
   StandInPoint chosen;
   float sum = 0;
   float pick = random.Next();
-  for (int i = 0; i < kCandidates; ++i) {
+  for (int i = 0; i < candidates; ++i) {
     float u = u0 + 0.7548777f * float(i), v = v0 + 0.5698403f * float(i);
     u -= std::floor(u);
     v -= std::floor(v);
@@ -156,7 +164,7 @@ void Receiver::Split(const ShootingField& field, const ShootingField::Root& root
   const auto corners = Bisect(parent.corners, apex);
   const auto weights = Bisect(parent.weights, apex);
   for (int i = 1; i >= 0; --i) {
-    Cell child{corners[i], weights[i], parent.radiance, {}, 0, parent.cell, parent.element, parent.depth + 1};
+    Cell child{corners[i], weights[i], parent.radiance, 0, parent.cell, parent.element, parent.depth + 1};
     if (tree && tree->child != kNone) {
       child.cell = tree->child + i;
       child.element = mesh_.cells[child.cell].element;
@@ -164,9 +172,9 @@ void Receiver::Split(const ShootingField& field, const ShootingField::Root& root
       child.radiance = field.cell_radiance(child.cell);
       if ((child.radiance == 0).all()) continue;
     }
-    child.light = LightOfTriangle(point, normal, child.corners);
-    if (!(child.light.irradiance > 0)) continue;
-    child.expected = child.light.irradiance * std::abs(child.radiance.sum()) * (root.glossy ? kGlossyCaution : 1);
+    const float light = EstimateTriangleLight(point, normal, child.corners).irradiance;
+    if (!(light > 0)) continue;
+    child.expected = light * std::abs(child.radiance.sum()) * (root.glossy ? kGlossyCaution : 1);
     stack_.push_back(child);
   }
 }
@@ -174,6 +182,8 @@ void Receiver::Split(const ShootingField& field, const ShootingField::Root& root
 void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node, const Cell& cell,
                     float weight, RandomStream& random, Received& work) {
   const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
+  const TriangleLight light = LightOfTriangle(point, normal, cell.corners);
+  if (!(light.irradiance > 0)) return;
   const auto [b, target] = StandIn(cell.corners, root.normal, point, normal, random);
   // The element at the point counts, not the cell's mean: what is dark is often also what is out of sight (the
   // floor under a box), and mean radiance times visible part would count that twice.
@@ -201,7 +211,7 @@ void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root,
     ++work.lobe_reads;
   }
   rays_.push_back({from, 0.0f, to - from, 1.0f});
-  deltas_.push_back({cell.light.direction, radiance * (cell.light.irradiance * weight)});
+  deltas_.push_back({light.direction, radiance * (light.irradiance * weight)});
 }
 
 void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
@@ -218,7 +228,7 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   for (size_t i = 0; i < roots.size(); ++i) {
     const auto& root = roots[i];
     if ((point - root.corners[0]).dot(root.normal) <= 0) continue;
-    const float light = LightOfTriangle(point, normal, root.corners).irradiance;
+    const float light = EstimateTriangleLight(point, normal, root.corners).irradiance;
     expected_[i] = light * std::abs(root.radiance.sum()) * (root.glossy ? kGlossyCaution : 1);
     total += expected_[i];
   }
@@ -233,10 +243,8 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   for (size_t i = 0; i < roots.size(); ++i) {
     if (!(expected_[i] > 0)) continue;
     const auto& root = roots[i];
-    Cell whole{root.corners, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, root.radiance, {}, expected_[i],
-               root.cell, root.cell == kNone ? kNone : mesh_.cells[root.cell].element, 0};
-    whole.light = LightOfTriangle(point, normal, root.corners);
-    stack_.assign(1, whole);
+    stack_.push_back({root.corners, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, root.radiance, expected_[i],
+                      root.cell, root.cell == kNone ? kNone : mesh_.cells[root.cell].element, 0});
     while (!stack_.empty()) {
       const Cell cell = stack_.back();
       stack_.pop_back();

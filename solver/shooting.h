@@ -83,8 +83,7 @@ class Receiver {
     std::array<Vec3, 3> corners;
     std::array<Vec3, 3> weights;   // of the element's nodes at the corners; at and below a leaf only
     Rgb radiance;
-    TriangleLight light;           // of radiance 1, unoccluded
-    float expected;                // irradiance it would bring, summed over channels
+    float expected;                // irradiance it would bring if free, summed over channels; an estimate
     uint32_t cell, element;
     int depth;
   };

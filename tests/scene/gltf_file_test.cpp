@@ -68,7 +68,8 @@ TEST(GltfFileTest, BrokenJsonIsToldWithItsPlace) {
   ExpectRefused("{\"asset\": 3}", "asset is 3, expected an object");
   ExpectRefused("{\"asset\": {\"version\": \"2.0\"}, \"x\": 1e999}", "out of range");
   ExpectRefused("{\"asset\": {\"version\": \"2.0\"}, \"buffers\": {}}", "buffers is {}, expected an array");
-  ExpectRefused("{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [7]}", "buffer 0: it is 7, expected an object");
+  ExpectRefused("{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [7]}",
+                "buffer 0: it is 7, expected an object");
   ExpectRefused("{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{}]}", "byteLength is missing");
   std::string deep = "{\"asset\": {\"version\": \"2.0\"}, \"extras\": ";
   for (int i = 0; i < 100000; ++i) deep += "[";
@@ -100,7 +101,8 @@ TEST(GltfFileTest, MissingBufferNamesFileAndIndex) {
   WriteWholeFile(folder.File("short.bin"), "abc");
   refused(R"({"uri": "gone.bin", "byteLength": 4})", "'gone.bin' is missing");
   refused(R"({"uri": "short.bin", "byteLength": 4})", "holds 3 bytes, expected 4");
-  refused(R"({"uri": "data:application/octet-stream;base64,AAEC", "byteLength": 4})", "holds 3 bytes, expected 4");
+  refused(R"({"uri": "data:application/octet-stream;base64,AAEC", "byteLength": 4})",
+          "holds 3 bytes, expected 4");
   refused(R"({"uri": "data:application/octet-stream;base64,A*EC", "byteLength": 3})", "cannot be read");
   refused(R"({"uri": "data:video/mp4;base64,AAEC", "byteLength": 3})", "media type");
   refused(R"({"uri": "https://example.org/a.bin", "byteLength": 3})", "only files");
@@ -176,7 +178,8 @@ TEST(GltfFileTest, SparseValuesReplaceTheirElements) {
   ExpectInputError([&] { GltfFile(b.Write()).ReadFloats(base, 2, "x"); },
                    {"sparse index 0 is 2, expected below 2"});
   b.document()["accessors"][base]["sparse"].erase("indices");
-  ExpectInputError([&] { GltfFile(b.Write()).ReadFloats(base, 2, "x"); }, {"sparse.indices.componentType is missing"});
+  ExpectInputError([&] { GltfFile(b.Write()).ReadFloats(base, 2, "x"); },
+                   {"sparse.indices.componentType is missing"});
 }
 
 TEST(GltfFileTest, AccessorsOutsideTheirDataAreRefused) {
@@ -209,11 +212,13 @@ TEST(GltfFileTest, AccessorsOutsideTheirDataAreRefused) {
     b.TriangleMesh();
     b.document()[nlohmann::json::json_pointer(c.pointer)] = c.value;
     const GltfFile file(b.Write());
-    ExpectInputError([&] { file.ReadFloats(0, 3, "positions"); }, {"test.glb", "positions", "accessor 0", c.words});
+    ExpectInputError([&] { file.ReadFloats(0, 3, "positions"); },
+                     {"test.glb", "positions", "accessor 0", c.words});
   }
   GltfBuilder b;
   b.document()["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 1u << 31}});
-  ExpectInputError([&] { GltfFile(b.Write()).ReadFloats(0, 3, "x"); }, {"count is 2147483648", "without a bufferView"});
+  ExpectInputError([&] { GltfFile(b.Write()).ReadFloats(0, 3, "x"); },
+                   {"count is 2147483648", "without a bufferView"});
 }
 
 TEST(GltfFileTest, DamagedFilesGiveASentenceOrAScene) {
@@ -244,7 +249,8 @@ TEST(GltfFileTest, DamagedFilesGiveASentenceOrAScene) {
   };
   for (size_t n = 0; n < good.size(); n += 7) attempt(good.substr(0, n));
   // And with the declared length mended, so that what is inside breaks off.
-  for (size_t n = 20; n < good.size(); n += 7) attempt(WithWord(good.substr(0, n), 8, static_cast<uint32_t>(n)));
+  for (size_t n = 20; n < good.size(); n += 7)
+    attempt(WithWord(good.substr(0, n), 8, static_cast<uint32_t>(n)));
   for (size_t at = 0; at < good.size(); ++at) {
     for (const int flip : {0x01, 0x10, 0x80}) {
       std::string bad = good;

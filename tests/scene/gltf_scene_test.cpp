@@ -73,7 +73,9 @@ TEST(GltfSceneTest, SceneMadeInCodeSurvivesTheTrip) {
       EXPECT_EQ(after.faces[f].material, before.faces[f].material);
       EXPECT_EQ(after.faces[f].surface, before.faces[f].surface);
       for (int k = 0; k < 3; ++k) {
-        EXPECT_LT((after.normals[after.faces[f].vertex[k]] - before.normals[before.faces[f].vertex[k]]).norm(), 1e-6f);
+        EXPECT_LT(
+            (after.normals[after.faces[f].vertex[k]] - before.normals[before.faces[f].vertex[k]]).norm(),
+            1e-6f);
       }
     }
     EXPECT_EQ(after.surface_names, before.surface_names);
@@ -93,8 +95,9 @@ TEST(GltfSceneTest, SceneMadeInCodeSurvivesTheTrip) {
     EXPECT_EQ(std::get<Ward>(after.materials[2].reflectance).alpha, 0.15f);
     const Camera &c = after.FindCamera("view0"), &d = before.cameras[0];
     EXPECT_EQ(c.fov_y, d.fov_y);
-    EXPECT_LT((c.eye - d.eye).norm() + (c.right - d.right).norm() + (c.up - d.up).norm() + (c.back - d.back).norm(),
-              1e-6f);
+    EXPECT_LT(
+        (c.eye - d.eye).norm() + (c.right - d.right).norm() + (c.up - d.up).norm() + (c.back - d.back).norm(),
+        1e-6f);
   }
 }
 
@@ -102,7 +105,8 @@ TEST(GltfSceneTest, MissingNormalsAreFlatWithVerticesPerFace) {
   GltfBuilder b;
   // Two triangles folded along the edge from (0,0,0) to (0,1,0), which they share.
   const int positions = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3");
-  b.Node({{"mesh", b.Mesh({{"attributes", {{"POSITION", positions}}}, {"indices", b.Uints({0, 1, 2, 0, 2, 3})}})}});
+  b.Node({{"mesh",
+           b.Mesh({{"attributes", {{"POSITION", positions}}}, {"indices", b.Uints({0, 1, 2, 0, 2, 3})}})}});
   const Scene scene = ReadGltfScene(b.Write());
   ASSERT_EQ(scene.faces.size(), 2u);
   EXPECT_EQ(scene.positions.size(), 6u);
@@ -148,7 +152,9 @@ TEST(GltfSceneTest, NegativeScaleMirrorsButKeepsTheFront) {
   // The mirror image of a triangle facing +z faces +z if x is mirrored, -z if z is.
   const float z[] = {1, -1, -1, 1};
   // Inverse transpose: (n.x / scale.x, n.y / scale.y, n.z / scale.z), normalised.
-  const Vec3 shading[] = {{-n.x(), n.y(), n.z()}, {n.x(), n.y(), -n.z() / 2}, {-n.x(), -n.y(), -n.z()},
+  const Vec3 shading[] = {{-n.x(), n.y(), n.z()},
+                          {n.x(), n.y(), -n.z() / 2},
+                          {-n.x(), -n.y(), -n.z()},
                           {-n.x() / 2, -n.y(), n.z()}};
   for (int i = 0; i < 4; ++i) {
     EXPECT_LT((scene.GeometricNormal(scene.faces[i]) - Vec3(0, 0, z[i])).norm(), 1e-6f) << i;
@@ -161,7 +167,9 @@ TEST(GltfSceneTest, StripsAndFansKeepTheirWinding) {
   const int strip = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, "VEC3");
   const int fan = b.Floats({0, 0, 5, 1, 0, 5, 1, 1, 5, 0, 1, 5, -1, 1, 5}, "VEC3");
   b.Node({{"mesh", b.Mesh({{"attributes", {{"POSITION", strip}}}, {"mode", 5}})}});
-  b.Node({{"mesh", b.Mesh({{"attributes", {{"POSITION", fan}}}, {"mode", 6}, {"indices", b.Uints({0, 1, 2, 3, 4})}})}});
+  b.Node(
+      {{"mesh",
+        b.Mesh({{"attributes", {{"POSITION", fan}}}, {"mode", 6}, {"indices", b.Uints({0, 1, 2, 3, 4})}})}});
   const Scene scene = ReadGltfScene(b.Write());
   ASSERT_EQ(scene.faces.size(), 6u);
   float strip_area = 0, fan_area = 0;
@@ -201,7 +209,9 @@ TEST(GltfSceneTest, QuantisedAndSparsePositionsAreRead) {
   const int sparse = b.Floats({0, 0, 0, 1, 0, 0, 9, 9, 9}, "VEC3");
   const int index = b.Packed({2}, 5121, "SCALAR", 1), value = b.Floats({0, 1, 0}, "VEC3");
   b.document()["accessors"][sparse]["sparse"] = {
-      {"count", 1}, {"indices", {{"bufferView", index}, {"componentType", 5121}}}, {"values", {{"bufferView", value}}}};
+      {"count", 1},
+      {"indices", {{"bufferView", index}, {"componentType", 5121}}},
+      {"values", {{"bufferView", value}}}};
   b.Node({{"mesh", b.Mesh({{"attributes", {{"POSITION", sparse}}}})}});
   const Scene scene = ReadGltfScene(b.Write());
   EXPECT_EQ(Corners(scene), (std::vector<float>{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0}));
@@ -277,39 +287,69 @@ TEST(GltfSceneTest, BadGeometryIsRefusedWithItsPlace) {
     ExpectInputError([&] { ReadGltfScene(path); }, {path});
   };
   const float nan = std::nanf("");
-  refused([&](GltfBuilder* b, json* d) {
-    (*d)["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
-        b->writer.AddFloats(std::vector<float>{0, 0, 0, 1, nan, 0, 0, 1, 0}, "VEC3", GlbWriter::Target::kVertices);
-  }, {"mesh 0 'plate'", "primitive 0", "accessor 2", "vertex 1 is not finite"});
-  refused([](GltfBuilder* b, json* d) {
-    (*d)["meshes"][0]["primitives"][0]["indices"] = b->Uints({0, 1, 3});
-  }, {"mesh 0 'plate'", "accessor 2", "index 2 is 3, expected below the 3 vertices"});
-  refused([](GltfBuilder* b, json* d) {
-    (*d)["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b->Floats({0, 0, 1, 0, 0, 1}, "VEC3");
-  }, {"mesh 0 'plate'", "NORMAL", "has 2 elements, expected 3"});
-  refused([](GltfBuilder* b, json* d) {
-    (*d)["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = b->Floats({0, 0, 1, 0}, "VEC2");
-  }, {"POSITION", "type is \"VEC2\", expected VEC3"});
-  refused([](GltfBuilder*, json* d) { (*d)["meshes"][0]["primitives"][0]["mode"] = 7; }, {"plate", "mode is 7"});
+  refused(
+      [&](GltfBuilder* b, json* d) {
+        (*d)["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = b->writer.AddFloats(
+            std::vector<float>{0, 0, 0, 1, nan, 0, 0, 1, 0}, "VEC3", GlbWriter::Target::kVertices);
+      },
+      {"mesh 0 'plate'", "primitive 0", "accessor 2", "vertex 1 is not finite"});
+  refused(
+      [](GltfBuilder* b, json* d) {
+        (*d)["meshes"][0]["primitives"][0]["indices"] = b->Uints({0, 1, 3});
+      },
+      {"mesh 0 'plate'", "accessor 2", "index 2 is 3, expected below the 3 vertices"});
+  refused(
+      [](GltfBuilder* b, json* d) {
+        (*d)["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b->Floats({0, 0, 1, 0, 0, 1}, "VEC3");
+      },
+      {"mesh 0 'plate'", "NORMAL", "has 2 elements, expected 3"});
+  refused(
+      [](GltfBuilder* b, json* d) {
+        (*d)["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = b->Floats({0, 0, 1, 0}, "VEC2");
+      },
+      {"POSITION", "type is \"VEC2\", expected VEC3"});
+  refused([](GltfBuilder*, json* d) { (*d)["meshes"][0]["primitives"][0]["mode"] = 7; },
+          {"plate", "mode is 7"});
   refused([](GltfBuilder*, json* d) { (*d)["meshes"][0]["primitives"][0]["material"] = 0; },
           {"plate", "material is 0", "nothing of that kind"});
   refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["mesh"] = 4; }, {"node 0 'root'", "mesh is 4"});
-  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["children"] = {0}; }, {"node 0 'root'", "reached twice"});
-  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["children"] = {5}; }, {"node 0 'root'", "children contains 5"});
-  refused([](GltfBuilder*, json* d) { (*d)["scenes"][0]["nodes"] = {0, 0}; }, {"node 0 'root'", "reached twice"});
+  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["children"] = {0}; },
+          {"node 0 'root'", "reached twice"});
+  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["children"] = {5}; },
+          {"node 0 'root'", "children contains 5"});
+  refused(
+      [](GltfBuilder*, json* d) {
+        (*d)["scenes"][0]["nodes"] = {0, 0};
+      },
+      {"node 0 'root'", "reached twice"});
   refused([](GltfBuilder*, json* d) { (*d)["scenes"][0]["nodes"] = {9}; }, {"scene 0", "nodes contains 9"});
   refused([](GltfBuilder*, json* d) { (*d)["scene"] = 2; }, {"scene is 2"});
-  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["scale"] = {1, 2}; }, {"node 0 'root'", "scale is [1,2]"});
+  refused(
+      [](GltfBuilder*, json* d) {
+        (*d)["nodes"][0]["scale"] = {1, 2};
+      },
+      {"node 0 'root'", "scale is [1,2]"});
   refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["scale"] = {1, 2, 1e39}; }, {"scale is"});
-  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["rotation"] = {0, 0, 0, 0}; }, {"rotation", "unit quaternion"});
-  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
+  refused(
+      [](GltfBuilder*, json* d) {
+        (*d)["nodes"][0]["rotation"] = {0, 0, 0, 0};
+      },
+      {"rotation", "unit quaternion"});
+  refused([](GltfBuilder*,
+             json* d) { (*d)["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
           {"matrix", "last row"});
-  refused([](GltfBuilder*, json* d) {
-    (*d)["nodes"][0]["scale"] = {1e30, 1e30, 1e30};
-    (*d)["nodes"][0]["children"] = {1};
-    (*d)["nodes"].push_back({{"scale", {1e30, 1, 1}}});
-  }, {"node 1", "not finite"});
-  refused([](GltfBuilder*, json* d) { (*d)["nodes"][0]["scale"] = {0, 1, 1}; }, {"the scene has no triangles"});
+  refused(
+      [](GltfBuilder*, json* d) {
+        (*d)["nodes"][0]["scale"] = {1e30, 1e30, 1e30};
+        (*d)["nodes"][0]["children"] = {1};
+        (*d)["nodes"].push_back({{"scale", {1e30, 1, 1}}});
+      },
+      {"node 1", "not finite"});
+  refused(
+      [](GltfBuilder*, json* d) {
+        (*d)["nodes"][0]["scale"] = {0, 1, 1};
+      },
+      {"the scene has no triangles"});
   refused([](GltfBuilder*, json* d) { (*d)["nodes"][0].erase("mesh"); }, {"the scene has no triangles"});
   refused([](GltfBuilder*, json* d) { (*d)["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
           {"requires the extension KHR_draco_mesh_compression"});
@@ -332,10 +372,12 @@ TEST(GltfSceneTest, WhatIsNotReadIsNamed) {
   const int positions = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   json& d = b.document();
   const int mesh = b.Mesh({{"attributes", {{"POSITION", positions}, {"COLOR_0", positions}}},
-                           {"targets", {{{"POSITION", positions}}}}}, "plate");
+                           {"targets", {{{"POSITION", positions}}}}},
+                          "plate");
   d["meshes"][mesh]["primitives"].push_back({{"attributes", {{"POSITION", positions}}}, {"mode", 1}});
   d["meshes"][mesh]["primitives"].push_back({{"attributes", json::object()}});
-  d["meshes"][mesh]["primitives"].push_back({{"attributes", {{"POSITION", positions}}}, {"indices", b.Uints({0, 1, 2, 0})}});
+  d["meshes"][mesh]["primitives"].push_back(
+      {{"attributes", {{"POSITION", positions}}}, {"indices", b.Uints({0, 1, 2, 0})}});
   b.Node({{"mesh", mesh}, {"name", "moving"}, {"skin", 0}, {"camera", 0}});
   d["cameras"] = {{{"type", "orthographic"}, {"name", "plan"}, {"orthographic", json::object()}}};
   d["animations"] = {json::object()};
@@ -404,8 +446,9 @@ TEST(GltfMaterialTest, PrimitivesWithoutMaterialGetTheDefaultOne) {
 }
 
 TEST(GltfMaterialTest, EmissionIsFactorTimesStrength) {
-  const Material m = ReadMaterial({{"emissiveFactor", {1, 0.5, 0.25}},
-                                   {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 12}}}}}});
+  const Material m =
+      ReadMaterial({{"emissiveFactor", {1, 0.5, 0.25}},
+                    {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 12}}}}}});
   EXPECT_TRUE(m.emission.isApprox(Rgb(12, 6, 3)));
   EXPECT_TRUE(m.emits());
   EXPECT_TRUE(ReadMaterial({{"emissiveFactor", {1, 0.5, 0.25}}}).emission.isApprox(Rgb(1, 0.5f, 0.25f)));
@@ -414,10 +457,10 @@ TEST(GltfMaterialTest, EmissionIsFactorTimesStrength) {
 TEST(GltfMaterialTest, SpecularAndIorAreRead) {
   const Material a = ReadMaterial({{"extensions", {{"KHR_materials_specular", json::object()}}}});
   EXPECT_TRUE(std::get<MetallicRoughness>(a.reflectance).has_specular);
-  const Material b = ReadMaterial({{"extensions",
-                                    {{"KHR_materials_specular", {{"specularFactor", 0.5},
-                                                                 {"specularColorFactor", {0.1, 0.2, 3}}}},
-                                     {"KHR_materials_ior", {{"ior", 0}}}}}});
+  const Material b = ReadMaterial(
+      {{"extensions",
+        {{"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {0.1, 0.2, 3}}}},
+         {"KHR_materials_ior", {{"ior", 0}}}}}});
   const auto& m = std::get<MetallicRoughness>(b.reflectance);
   EXPECT_EQ(m.specular, 0.5f);
   EXPECT_TRUE(m.specular_color.isApprox(Rgb(0.1f, 0.2f, 3)));
@@ -450,23 +493,31 @@ TEST(GltfMaterialTest, ValuesOutOfRangeNameMaterialPropertyValueAndRange) {
   refused(pbr("roughnessFactor", "rough"), {"roughnessFactor is \"rough\", expected 0 to 1"});
   refused(pbr("roughnessFactor", nullptr), {"roughnessFactor is null"});
   refused(pbr("metallicFactor", 2), {"metallicFactor is 2, expected 0 to 1"});
-  refused(pbr("baseColorFactor", {0.5, -0.5, 0.5, 1}), {"baseColorFactor is [0.5,-0.5,0.5,1], expected 4 numbers, each 0 to 1"});
+  refused(pbr("baseColorFactor", {0.5, -0.5, 0.5, 1}),
+          {"baseColorFactor is [0.5,-0.5,0.5,1], expected 4 numbers, each 0 to 1"});
   refused(pbr("baseColorFactor", {0.5, 0.5, 0.5}), {"baseColorFactor", "4 numbers"});
   refused({{"emissiveFactor", {-1, 0, 0}}}, {"emissiveFactor is [-1,0,0]", "at least 0"});
   refused({{"emissiveFactor", {1e300, 0, 0}}}, {"emissiveFactor", "finite"});
-  refused({{"emissiveFactor", {1e30, 0, 0}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e30}}}}}},
+  refused({{"emissiveFactor", {1e30, 0, 0}},
+           {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e30}}}}}},
           {"emissiveFactor times emissiveStrength is not finite"});
   refused(extension("KHR_materials_emissive_strength", "emissiveStrength", -2),
           {"KHR_materials_emissive_strength.emissiveStrength is -2"});
-  refused(extension("KHR_materials_ior", "ior", 0.5), {"KHR_materials_ior.ior is 0.5, expected 0 or at least 1"});
+  refused(extension("KHR_materials_ior", "ior", 0.5),
+          {"KHR_materials_ior.ior is 0.5, expected 0 or at least 1"});
   refused(extension("KHR_materials_ior", "ior", -1), {"ior is -1"});
-  refused(extension("KHR_materials_specular", "specularFactor", 1.1), {"specularFactor is 1.1, expected 0 to 1"});
+  refused(extension("KHR_materials_specular", "specularFactor", 1.1),
+          {"specularFactor is 1.1, expected 0 to 1"});
   refused(extension("KHR_materials_specular", "specularColorFactor", {1, 1, -1}), {"specularColorFactor"});
-  refused(extension("LOBE_materials_brdf", "model", "toon"), {"LOBE_materials_brdf.model is \"toon\"", "\"ward\""});
+  refused(extension("LOBE_materials_brdf", "model", "toon"),
+          {"LOBE_materials_brdf.model is \"toon\"", "\"ward\""});
   refused(extension("LOBE_materials_brdf", "albedo", {1, 1, 1}), {"LOBE_materials_brdf.model is missing"});
-  refused({{"extensions", {{"LOBE_materials_brdf", {{"model", "phong"}, {"exponent", -1}}}}}}, {"exponent is -1"});
-  refused({{"extensions", {{"LOBE_materials_brdf", {{"model", "ward"}, {"alpha", 0}}}}}}, {"alpha is 0, expected 0.001 to 1"});
-  refused({{"extensions", {{"LOBE_materials_brdf", {{"model", "ward"}, {"albedo", {2, 0, 0}}}}}}}, {"albedo is [2,0,0]"});
+  refused({{"extensions", {{"LOBE_materials_brdf", {{"model", "phong"}, {"exponent", -1}}}}}},
+          {"exponent is -1"});
+  refused({{"extensions", {{"LOBE_materials_brdf", {{"model", "ward"}, {"alpha", 0}}}}}},
+          {"alpha is 0, expected 0.001 to 1"});
+  refused({{"extensions", {{"LOBE_materials_brdf", {{"model", "ward"}, {"albedo", {2, 0, 0}}}}}}},
+          {"albedo is [2,0,0]"});
   refused({{"extensions", 5}}, {"extensions is 5, expected an object"});
   refused({{"doubleSided", 1}}, {"doubleSided is 1, expected true or false"});
 }
@@ -484,13 +535,14 @@ TEST(GltfMaterialTest, WhatIsNotReadIsNamedWithWhatIsUsed) {
                   {"KHR_materials_emissive_strength", json::object()}}}},
                &warnings);
   std::sort(warnings.begin(), warnings.end());
-  EXPECT_EQ(warnings, (std::vector<std::string>{
-                          "material 0 'oak': KHR_materials_clearcoat is not read; the material is taken without it",
-                          "material 0 'oak': KHR_materials_transmission is not read; the surface is opaque",
-                          "material 0 'oak': alphaMode BLEND is not read; the surface is opaque",
-                          "material 0 'oak': baseColorTexture is not read; its factor is used",
-                          "material 0 'oak': normalTexture is not read; the surface is taken without it",
-                          "material 0 'oak': specularColorTexture is not read; its factor is used"}));
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{
+                "material 0 'oak': KHR_materials_clearcoat is not read; the material is taken without it",
+                "material 0 'oak': KHR_materials_transmission is not read; the surface is opaque",
+                "material 0 'oak': alphaMode BLEND is not read; the surface is opaque",
+                "material 0 'oak': baseColorTexture is not read; its factor is used",
+                "material 0 'oak': normalTexture is not read; the surface is taken without it",
+                "material 0 'oak': specularColorTexture is not read; its factor is used"}));
 }
 
 TEST(GltfMaterialTest, TexturedFilesAreReadWithoutTheirImages) {

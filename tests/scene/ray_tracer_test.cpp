@@ -108,8 +108,8 @@ TEST(RayTracerTest, SideIsFrontForCounterClockwise) {
 
 TEST(RayTracerTest, PacketsEqualSinglesBitForBit) {
   Random random;
-  for (const Scene& scene : {RoomWithThings(), Soup(300, &random),
-                             ReadGltfScene(LOBE_TEST_DATA "/scenes/glossy_floor.glb")}) {
+  for (const Scene& scene :
+       {RoomWithThings(), Soup(300, &random), ReadGltfScene(LOBE_TEST_DATA "/scenes/glossy_floor.glb")}) {
     const RayTracer tracer(scene);
     const Vec3 centre = scene.Bounds().center();
     std::vector<Ray> rays;
@@ -182,7 +182,8 @@ TEST(RayTracerTest, SealedRoomDoesNotLeak) {
   int leaks = 0;
   for (int i = 0; i < 20000; ++i) {
     // At edges and corners of the room in particular.
-    Vec3 target(random.Uniform() < 0.5f ? -2.0f : 2.0f, 3 * random.Uniform(), random.Uniform() < 0.5f ? -2.0f : 2.0f);
+    Vec3 target(random.Uniform() < 0.5f ? -2.0f : 2.0f, 3 * random.Uniform(),
+                random.Uniform() < 0.5f ? -2.0f : 2.0f);
     if (i % 4 == 0) target.y() = i % 8 ? 0.0f : 3.0f;
     const Vec3 eye(0.31f, 2.2f, -0.27f);
     leaks += !tracer.Intersect({eye, 0, i % 2 ? Vec3(target - eye) : random.Direction(), kFar}).hit();

@@ -24,8 +24,9 @@ TEST(SceneTest, AreaAndNormalOfATriangleAreThoseOfItsCrossProduct) {
 
 TEST(SceneTest, NormalsOfTinyTrianglesFarAwayKeepTheirDigits) {
   SceneBuilder b;
-  const float h = 1.0f / 1024;   // exact beside 1000
-  b.AddTriangle({1000, 1000, 1000}, {1000 + h, 1000, 1000}, {1000, 1000 + h, 1000 + h}, b.AddLambert(Rgb::Zero()));
+  const float h = 1.0f / 1024;  // exact beside 1000
+  b.AddTriangle({1000, 1000, 1000}, {1000 + h, 1000, 1000}, {1000, 1000 + h, 1000 + h},
+                b.AddLambert(Rgb::Zero()));
   const Scene scene = b.Build();
   EXPECT_LT((scene.GeometricNormal(scene.faces[0]) - Vec3(0, -1, 1).normalized()).norm(), 1e-6f);
 }
@@ -34,7 +35,7 @@ TEST(SceneTest, BoundsHoldTheFacesOnly) {
   SceneBuilder b;
   b.AddBox({-1, 0, 2}, {3, 4, 5}, b.AddLambert(Rgb::Zero()));
   Scene scene = b.Build();
-  scene.positions.push_back({100, 100, 100});   // no face's
+  scene.positions.push_back({100, 100, 100});  // no face's
   EXPECT_EQ(scene.Bounds().min(), Vec3(-1, 0, 2));
   EXPECT_EQ(scene.Bounds().max(), Vec3(3, 4, 5));
   EXPECT_TRUE(Scene{}.Bounds().isEmpty());

@@ -129,7 +129,8 @@ void ExpectMeshLaws(const Scene& scene, const Mesh& mesh, float max_edge) {
         stack.insert(stack.end(), {cell.child, cell.child + 1});
       }
     }
-    // Areas round by 2^-24 of themselves, and each midpoint on the face's edges moves by 2^-24 of its coordinates.
+    // Areas round by 2^-24 of themselves, and each midpoint on the face's edges moves by 2^-24 of its
+    // coordinates.
     const auto p = scene.Corners(scene.faces[root / 2]);
     const double face_area = scene.Area(scene.faces[root / 2]);
     const double perimeter = (p[0] - p[1]).norm() + (p[1] - p[2]).norm() + (p[2] - p[0]).norm();
@@ -148,8 +149,8 @@ void ExpectLocateFindsPoints(const Scene& scene, const Mesh& mesh, int count) {
     const uint32_t f = bits() % scene.faces.size();
     float u = uniform(bits), v = uniform(bits);
     if (u + v > 1) u = 1 - u, v = 1 - v;
-    if (i % 10 == 0) u = 0;                   // edges
-    if (i % 20 == 0) v = i % 40 ? 1.0f : 0;   // corners
+    if (i % 10 == 0) u = 0;                  // edges
+    if (i % 20 == 0) v = i % 40 ? 1.0f : 0;  // corners
     for (const Side side : {Side::kFront, Side::kBack}) {
       const Mesh::Location where = mesh.Locate(f, side, u, v);
       if (mesh.roots[2 * f + static_cast<size_t>(side)] == kNone) {
@@ -174,7 +175,8 @@ void ExpectLocateFindsPoints(const Scene& scene, const Mesh& mesh, int count) {
 }
 
 TEST(TessellateTest, MeshesOfTestScenesObeyTheLaws) {
-  for (const char* name : {"cornell_diffuse", "cornell_glossy", "furnace_glossy", "glossy_floor", "lampshade"}) {
+  for (const char* name :
+       {"cornell_diffuse", "cornell_glossy", "furnace_glossy", "glossy_floor", "lampshade"}) {
     SCOPED_TRACE(name);
     const Scene scene = ReadGltfScene(std::string(LOBE_TEST_DATA "/scenes/") + name + ".glb");
     for (const float edge : {10.0f, 0.4f, 0.17f}) {
@@ -237,7 +239,7 @@ TEST(TessellateTest, CreasesSeparatePatchesAndSmoothEdgesJoin) {
   b.AddBox({0, 0, 0}, {1, 2, 3}, grey);
   b.AddSphere({5, 0, 0}, 1, grey, 12);
   b.AddQuad({0, 0, 9}, {1, 0, 9}, {1, 1, 9}, {0, 1, 9}, grey);
-  b.AddQuad({1, 0, 9}, {2, 0, 9}, {2, 1, 9}, {1, 1, 9}, grey);   // beside it, but a surface of its own
+  b.AddQuad({1, 0, 9}, {2, 0, 9}, {2, 1, 9}, {1, 1, 9}, grey);  // beside it, but a surface of its own
   const Mesh mesh = WithEdge(b.Build(), 0.3f);
   ASSERT_EQ(mesh.patches.size(), 6u + 1 + 2);
   for (int i = 0; i < 6; ++i) EXPECT_TRUE(mesh.patches[i].planar);
@@ -364,7 +366,7 @@ TEST(TessellateTest, SamplesOfCurvedSurfacesStayOnThem) {
   ASSERT_EQ(mesh.patches.size(), 1u);
   for (size_t n = 0; n < mesh.node_count(); ++n) {
     const Vec3 s = mesh.node_sample_position[n];
-    float nearest = 1;   // distance to the plane of the face in front of it
+    float nearest = 1;  // distance to the plane of the face in front of it
     for (const Face& f : scene.faces) {
       nearest = std::min(nearest, std::abs(scene.GeometricNormal(f).dot(s - scene.positions[f.vertex[0]])));
     }
@@ -383,8 +385,8 @@ TEST(TessellateTest, NonManifoldSurfacesAreMeshedInPieces) {
   // with two corners nearer than the welding distance.
   b.AddMesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3f, 1.2f, 0}, {0.5f, -1, 0}}, {z, z, z, z, z},
             {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {0, 1, 2}}, grey);
-  b.AddMesh({{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {4, 0, 0}, {4, -1, 0}, {5, -1, 0}, {6, -1, 0}}, {z, z, z, z, z, z, z},
-            {{0, 1, 2}, {0, 3, 4}, {0, 5, 6}}, grey);
+  b.AddMesh({{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {4, 0, 0}, {4, -1, 0}, {5, -1, 0}, {6, -1, 0}},
+            {z, z, z, z, z, z, z}, {{0, 1, 2}, {0, 3, 4}, {0, 5, 6}}, grey);
   b.AddMesh({{8, 0, 0}, {8 + 1e-6f, 0, 0}, {8, 1, 0}}, {z, z, z}, {{0, 1, 2}}, grey);
   const Scene scene = b.Build();
   const Mesh mesh = WithEdge(scene, 0.3f);
@@ -434,7 +436,7 @@ TEST(MeshTest, LocateForgivesBarycentricsARoundingErrorOutside) {
   const Mesh mesh = WithEdge(b.Build(), 0.1f);
   for (const Side side : {Side::kFront, Side::kBack}) {
     for (const auto& [u, v] : {std::pair(-1e-7f, 0.3f), std::pair(0.3f, -1e-7f), std::pair(0.6f, 0.4000002f),
-                              std::pair(1.0000001f, 0.0f), std::pair(-1e-9f, 1.0000001f)}) {
+                               std::pair(1.0000001f, 0.0f), std::pair(-1e-9f, 1.0000001f)}) {
       const Mesh::Location where = mesh.Locate(0, side, u, v);
       ASSERT_NE(where.element, kNone);
       Vec3 point = Vec3::Zero();

@@ -21,7 +21,7 @@ inline RayHit BruteForceIntersect(const Scene& scene, const Ray& ray) {
     const Vec3d p0 = p[0].cast<double>();
     const Vec3d e1 = p[1].cast<double>() - p0, e2 = p[2].cast<double>() - p0;
     const Vec3d q = d.cross(e2);
-    const double det = e1.dot(q);   // minus direction times front normal
+    const double det = e1.dot(q);  // minus direction times front normal
     if (det == 0) continue;
     const Vec3d s = ray.origin.cast<double>() - p0;
     const double u = s.dot(q) / det;

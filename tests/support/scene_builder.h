@@ -57,7 +57,7 @@ class SceneBuilder {
         const int a = (axis + 1) % 3, b = (axis + 2) % 3;
         std::vector<Vec3> p(4, min);
         for (Vec3& q : p) q[axis] = high ? max[axis] : min[axis];
-        p[1][a] = p[2][a] = max[a];   // counter-clockwise seen from +axis
+        p[1][a] = p[2][a] = max[a];  // counter-clockwise seen from +axis
         p[2][b] = p[3][b] = max[b];
         if ((high == 1) == inward) std::swap(p[1], p[3]);
         FlatFace(p, material, surface);
@@ -112,8 +112,8 @@ class SceneBuilder {
     return surface;
   }
 
-  void AddCamera(const std::string& name, const Vec3& eye, const Vec3& target,
-                 const Vec3& up = Vec3::UnitY(), float fov_y = 0.7f) {
+  void AddCamera(const std::string& name, const Vec3& eye, const Vec3& target, const Vec3& up = Vec3::UnitY(),
+                 float fov_y = 0.7f) {
     scene_.cameras.push_back(LookAt(eye, target, up, fov_y));
     scene_.cameras.back().name = name;
   }
