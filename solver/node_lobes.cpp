@@ -31,7 +31,7 @@ NodeLobes::NodeLobes(const Mesh& mesh, const std::vector<PartDegrees>& patch_deg
       for (int l = 0; l <= l_max; l += 2) zonal_flux_[l_max].push_back(float(weights[CoefficientIndex(l, 0)]));
     }
     const int l_max = degrees.max_degree();
-    if (l_max > 0 && !bases_[l_max]) bases_[l_max] = std::make_shared<HemisphereBasis<float>>(l_max);
+    if (l_max >= 0 && !bases_[l_max]) bases_[l_max] = std::make_shared<HemisphereBasis<float>>(l_max);
   }
 }
 

@@ -90,6 +90,21 @@ TEST(SolverTest, ADiffuseSceneStoresThreeFloatsANodeAndNeverTouchesALobe) {
   EXPECT_GT(work.lobe_writes, 0u);
 }
 
+// A lobe of degree 0 is a glossy node that happens to be constant: its albedo still depends on the angle.
+TEST(SolverTest, DegreeZeroReducesToRadiosityWithTheSameEnergy) {
+  const auto reflected = [](int l_max, const Reflectance& r) {
+    SolveOptions o = Coarse();
+    o.lobes.l_max = l_max;
+    o.max_steps = 0;
+    return Solve(MakeRoom(r).scene, o).ledger.reflected[0];
+  };
+  for (const float metallic : {0.0f, 1.0f}) {
+    MetallicRoughness r = Metal(0.4f);
+    r.metallic = metallic;
+    EXPECT_NEAR(reflected(0, r), reflected(12, r), 0.01 * reflected(12, r));
+  }
+}
+
 TEST(SolverTest, LedgerClosesAndImbalanceIsSmall) {
   for (const Reflectance& r : {Reflectance(Lambert{}), Reflectance(Metal(0.4f))}) {
     const Solution s = Solve(MakeRoom(r).scene, Coarse());
