@@ -23,6 +23,7 @@
 #include "solver/hash.h"
 #include "solver/shooting.h"
 #include "solver/solver.h"
+#include "tests/support/adaptive_albedo.h"
 #include "tests/support/scene_builder.h"
 
 namespace lobe {
@@ -98,6 +99,56 @@ void Degree() {
     std::printf("| %.2f |", roughness);
     for (const int l : degrees) std::printf(" %.1f %% |", 100 * table.Error(l));
     std::printf("\n");
+  }
+}
+
+// Flux of the lobes against an adaptive quadrature that shares nothing with brdf/.
+void Flux() {
+  struct Model {
+    const char* name;
+    Reflectance reflectance;
+    double width;
+  };
+  std::vector<Model> models;
+  for (const float roughness : {0.05f, 0.1f, 0.2f, 0.3f, 0.5f, 0.7f, 1.0f}) {
+    models.push_back({"metal,", Metal(roughness), double(roughness) * roughness});
+  }
+  MetallicRoughness coat = Metal(0.3f);
+  coat.metallic = 0;
+  models.push_back({"dielectric,", coat, 0.09});
+  for (const float n : {5.0f, 20.0f, 200.0f}) models.push_back({"", Phong{Rgb::Constant(1), n}, 1 / std::sqrt(n + 1.0)});
+  for (const float a : {0.1f, 0.4f}) models.push_back({"", Ward{Rgb::Constant(1), a}, a});
+  std::printf("| model | at knots, worst | between knots to 89 degrees, worst of l_max 0, 6, 12, 24 |\n|---|---|---|\n");
+  TableCache cache;
+  for (const Model& model : models) {
+    const ScalarBrdf gloss = [&](const Vec3d& a, const Vec3d& b) { return double(EvaluateGloss(model.reflectance, a, b)[0]); };
+    const ScalarBrdf base = [&](const Vec3d& a, const Vec3d& b) { return double(EvaluateBase(model.reflectance, a, b)[0]); };
+    const auto table = ScalarTable::Build(gloss, 0, HalfVectorRule{.width = model.width}, 24);
+    const IncidenceSpline spline(24);
+    double at_knots = 0, between = 0;
+    for (int k = 0; k < 23; k += 2) {
+      at_knots = std::max(at_knots, std::abs(std::sqrt(kPi) * table.zernike(0, k) -
+                                             test::AdaptiveAlbedo(gloss, spline.KnotCosine(k), model.width)));
+    }
+    for (const double degrees : {2.0, 17.0, 38.0, 55.5, 69.0, 79.0, 85.2, 88.0, 89.0}) {
+      const double c = std::cos(degrees * kPi / 180), s = std::sqrt(1 - c * c);
+      double exact = test::AdaptiveAlbedo(gloss, c, model.width);
+      if (EvaluateBase(model.reflectance, Vec3d(0, 0, 1), Vec3d(0, 0, 1))[0] > 0) exact += test::AdaptiveAlbedo(base, c, 1);
+      for (const int l_max : {0, 6, 12, 24}) {
+        LobeOptions options;
+        options.force_l_max = l_max;
+        const MaterialLobes material(model.reflectance, options, cache);
+        IncidentMoments moments;
+        moments.Start(material);
+        moments.Add(Vec3(float(0.6 * s), float(0.8 * s), float(c)), Rgb::Constant(1));
+        Eigen::MatrixXf b = Eigen::MatrixXf::Zero(material.base.count(), 3), g = Eigen::MatrixXf::Zero(material.gloss.count(), 3);
+        moments.Finish(b.data(), g.data());
+        double flux = LobeFlux(g.cast<double>())(0);
+        if (b.rows() > 0) flux += LobeFlux(b.cast<double>())(0);
+        between = std::max(between, std::abs(flux - exact));
+      }
+    }
+    std::printf("| %s %s | %.0e | %.0e |\n", model.name, Describe(model.reflectance).c_str(), at_knots, between);
   }
 }
 
@@ -407,7 +458,8 @@ void Split() {
 }
 
 const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {
-    {"basis", Basis},       {"degree", Degree},       {"knots", Knots},         {"furnaces", Furnaces},
+    {"basis", Basis},       {"degree", Degree},       {"flux", Flux},
+    {"knots", Knots},         {"furnaces", Furnaces},
     {"form-factors", FormFactors}, {"cornell", Cornell}, {"light-samples", LightSamples},
     {"delta-areas", DeltaAreas},   {"step-fraction", Portions}, {"border", Border},
     {"lobe-error", LobeError},     {"residual", Residual},      {"split", Split}};

@@ -28,7 +28,7 @@ std::string Key(const char* model, double parameter, int l_max, int knots) {
   return key.str();
 }
 
-// Value of each fine-grid sample of the spline's flux for one channel.
+// What the spline's flux lacks of the albedo, at each sample of the fine grid.
 std::vector<float> FluxRest(const IncidenceSpline& spline, const Eigen::VectorXd& flux_at_knots,
                             const Eigen::VectorXd& albedo) {
   const Eigen::MatrixXd control = spline.ControlValues(flux_at_knots, /*odd=*/false);

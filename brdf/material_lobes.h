@@ -47,7 +47,6 @@ struct PartLobes {
   std::array<std::vector<float>, 3> albedo, flux_rest;
 
   int count() const { return l_max < 0 ? 0 : (l_max + 1) * (l_max + 2) / 2; }
-  bool constant() const { return l_max == 0; }
   int RowCount() const { return (l_max / 2 + 1) * ((l_max + 1) / 2 + 1); }
   /// Rows run over m for each step (l - m) / 2, so that loops over them vectorise over m.
   int Row(int l, int m) const {

@@ -34,7 +34,7 @@ struct RenderReport {
   bool complete = true;        ///< false: stopped early
 };
 
-/// Renders views of one solution; construction prepares what all views share.
+/// Renders views of one solution, which must outlive it; construction prepares what all views share.
 class Renderer {
  public:
   explicit Renderer(const Solution& solution);
@@ -47,7 +47,7 @@ class Renderer {
   Image Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                const std::function<bool(double)>& progress = {}) const;
 
-  /// Radiance arriving at the ray's origin along it.
+  /// Radiance arriving at the ray's origin along it, after at most the default number of mirrors.
   Rgb Radiance(const Ray& ray) const;
 
  private:

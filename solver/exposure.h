@@ -11,8 +11,9 @@
 namespace lobe {
 
 /// Which sides of which faces light can reach: 2 * face + side. Found by random walks from the emitters,
-/// in rounds until a round reaches nothing new, per connected piece of a surface. A side that no light
-/// meets gets no nodes and costs nothing (the inside of a closed box, say).
+/// in rounds until a round reaches nothing new, per connected piece of a surface; then by rays aimed at what
+/// walks have not met. A side that no light meets gets no nodes and costs nothing (the inside of a closed box,
+/// say).
 /// Throws InputError if nothing emits.
 std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed);
 
@@ -32,7 +33,7 @@ struct Exposure {
   std::vector<LostRay> lost;
 
   /// The same for emission, as fractions of each channel's emitted power.
-  double emission_escaped = 0, emission_blocked = 0;
+  Eigen::Array3d emission_escaped = Eigen::Array3d::Zero(), emission_blocked = Eigen::Array3d::Zero();
   uint64_t rays = 0;
 };
 Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tracer, uint64_t seed);

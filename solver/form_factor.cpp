@@ -12,11 +12,11 @@ constexpr float kFar = 6.0f;
 // And to 4 % beyond this many.
 constexpr float kFarEnough = 2.0f;
 
+}  // namespace
+
 float LongestEdgeSquared(const std::array<Vec3, 3>& p) {
   return std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
 }
-
-}  // namespace
 
 TriangleLight ExactTriangleLight(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners) {
   // Clip to the horizon: at most four corners remain.

@@ -6,6 +6,8 @@
 
 namespace lobe {
 
+float LongestEdgeSquared(const std::array<Vec3, 3>& corners);
+
 /// Light from a triangle of radiance 1 at a point, nothing in between.
 struct TriangleLight {
   float irradiance = 0;          ///< W m^-2; pi times the point-to-triangle form factor

@@ -20,7 +20,7 @@ struct Ledger {
   Power mirrored{};    ///< reflected by ideal mirrors, which shooting does not follow
   Power truncated{};   ///< delivered - absorbed - reflected - mirrored: what the lobes' tables lose
   Power escaped{};     ///< sent along rays that leave the scene
-  Power blocked{};     ///< sent to black backs, and to sides and nodes that hold no light
+  Power blocked{};     ///< sent to black backs, and to sides without nodes
   Power unshot{};      ///< still waiting at the end
   /// Delivered minus (sent - escaped - blocked): point collocation does not conserve power. Tends to 0
   /// as the mesh is refined.
@@ -36,7 +36,7 @@ struct StepRecord {
   double residual = 1;          ///< unshot / emitted after it
   double seconds = 0;           ///< since the start
   uint64_t rays = 0;            ///< so far
-  uint32_t shooters = 0;        ///< nodes that shot
+  uint32_t shooters = 0;        ///< nodes that shot; in step 0, emitting sides of faces
 };
 
 }  // namespace lobe

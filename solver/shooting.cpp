@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "brdf/frame.h"
@@ -40,9 +41,7 @@ StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, cons
   // Seen small and well above both horizons the kernel is as good as constant: any point will do.
   const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f) - point;
   const float distance = middle.norm();
-  const float size2 =
-      std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
-  const bool even = size2 < 0.0625f * distance * distance && middle.dot(normal) > 0.3f * distance &&
+  const bool even = LongestEdgeSquared(p) < 0.0625f * distance * distance && middle.dot(normal) > 0.3f * distance &&
                     -middle.dot(cell_normal) > 0.3f * distance;
   const int candidates = even ? 1 : kCandidates;
   // Candidates follow the plastic-number sequence (Roberts 2018), shifted at random: stratified.
@@ -61,7 +60,7 @@ StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, cons
     const Vec3 position = p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v;
     const Vec3 to = position - point;
     const float r2 = to.squaredNorm(), cos_i = to.dot(normal), cos_o = -to.dot(cell_normal);
-    if (!(r2 > 0) || cos_i <= 0 || cos_o <= 0) continue;
+    if (!(r2 * r2 > 0) || cos_i <= 0 || cos_o <= 0) continue;
     const float kernel = cos_i * cos_o / (r2 * r2);
     sum += kernel;
     // One number serves all choices: rescaled, what is left of it is uniform again.
@@ -100,7 +99,6 @@ ShootingField::ShootingField(const Scene& scene, const Mesh& mesh, const std::ve
   std::vector<Rgb> node_radiance(mesh.node_count());
   for (uint32_t n = 0; n < mesh.node_count(); ++n) {
     node_radiance[n] = lobes.Flux(n) / std::numbers::pi_v<float>;
-    max_degree_ = std::max(max_degree_, lobes.degrees(n).max_degree());
   }
   // Children lie after their parents and halve them exactly.
   for (size_t i = mesh.cells.size(); i-- > 0;) {
@@ -251,8 +249,7 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
       bool split = cell.expected > threshold;
       if (!split && cell.expected > portion && std::isfinite(max_angle)) {
         const auto& p = cell.corners;
-        const float size2 = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
-        split = size2 > max_angle * max_angle * ((p[0] + p[1] + p[2]) / 3.0f - point).squaredNorm();
+        split = LongestEdgeSquared(p) > max_angle * max_angle * ((p[0] + p[1] + p[2]) / 3.0f - point).squaredNorm();
       }
       if (split && cell.depth < kMaxDepth) {
         Split(field, root, point, normal, cell);

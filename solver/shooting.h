@@ -24,7 +24,7 @@ class ShootingField {
   /// Emission.
   ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters);
   /// Light reflected by nodes: `lobes` with zeros where a node does not shoot. `planar` patches share one
-  /// basis evaluation. Both references are kept.
+  /// basis evaluation. References to `mesh`, `hidden` and `lobes` are kept.
   ShootingField(const Scene& scene, const Mesh& mesh, const std::vector<uint8_t>& hidden, const NodeLobes& lobes);
 
   struct Root {
@@ -36,7 +36,6 @@ class ShootingField {
   };
   const std::vector<Root>& roots() const { return roots_; }
   const Rgb& cell_radiance(uint32_t cell) const { return cell_radiance_[cell]; }
-  const Mesh& mesh() const { return *mesh_; }
   bool emission() const { return lobes_ == nullptr; }
 
   /// Radiance of a point of `element`, given by weights, towards `wo_world`. `basis` is scratch.
@@ -48,7 +47,6 @@ class ShootingField {
   const NodeLobes* lobes_ = nullptr;
   std::vector<Root> roots_;
   std::vector<Rgb> cell_radiance_;
-  int max_degree_ = 0;
 };
 
 /// What a receiver got of one step, for the ledger (W m^-2) and for counting work.
@@ -57,7 +55,7 @@ struct Received {
   Rgb reflected = Rgb::Zero();                ///< by albedo, angle by angle; the lobes' flux should equal it
   uint64_t rays = 0;
   uint64_t lobe_reads = 0, lobe_writes = 0;   ///< directional evaluations and accumulations
-  double seconds_cutting = 0, seconds_rays = 0, seconds_reads = 0, seconds_accumulating = 0;
+  double seconds_cutting = 0, seconds_rays = 0, seconds_accumulating = 0;
 };
 
 /// Gathers a step's light at one receiving node after another: the receiving half of progressive shooting

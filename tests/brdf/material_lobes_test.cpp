@@ -49,6 +49,8 @@ TEST(MaterialLobesTest, FallsIntoTheFourKinds) {
   EXPECT_EQ(MaterialLobes(Lambert{}, options, cache).kind(), GlossKind::kNone);
   EXPECT_EQ(MaterialLobes(Gltf(0.9f, 1, 0.5f), options, cache).kind(), GlossKind::kLobe);
   EXPECT_EQ(MaterialLobes(Gltf(0.9f, 1, 0.2f), options, cache).kind(), GlossKind::kSharp);
+  EXPECT_EQ(MaterialLobes(Gltf(0.9f, 1, 0.0099f), options, cache).kind(), GlossKind::kMirror);
+  EXPECT_EQ(MaterialLobes(Gltf(0.9f, 1, 0.01f), options, cache).kind(), GlossKind::kSharp);
   const MaterialLobes mirror(Gltf(0.9f, 0, 0.0f), options, cache);
   EXPECT_EQ(mirror.kind(), GlossKind::kMirror);
   EXPECT_LT(mirror.gloss.l_max, 0);

@@ -150,6 +150,32 @@ TEST(SolverTest, AnOpenSceneLosesWhatEscapes) {
   EXPECT_LT(s.ledger.Closure(), 1e-5);
 }
 
+// One lamp in a closed room, one of another colour in the void: each channel's power is its own lamp's.
+TEST(SolverTest, WhatEscapesHasTheColourOfItsLamp) {
+  SceneBuilder b;
+  b.AddBox({0, 0, 0}, {2, 2, 2}, b.AddLambert(Rgb::Constant(0.5f)), true);
+  b.AddQuad({0.5f, 1.9f, 0.5f}, {1.5f, 1.9f, 0.5f}, {1.5f, 1.9f, 1.5f}, {0.5f, 1.9f, 1.5f}, b.AddEmitter({1, 0, 0}));
+  b.AddQuad({9, 1, 0}, {10, 1, 0}, {10, 1, 1}, {9, 1, 1}, b.AddEmitter({0, 0, 1}));
+  const Ledger ledger = Solve(b.Build(), Coarse()).ledger;
+  EXPECT_EQ(ledger.escaped[0], 0);
+  EXPECT_EQ(ledger.escaped[2], ledger.emitted[2]);
+  EXPECT_LT(ledger.RelativeImbalance(), 0.05);
+}
+
+// A mirror in a room whose walls emit 1: the mean of Schlick's Fresnel over projected solid angle is
+// f0 + (1 - f0) / 21, and irradiance is pi.
+TEST(SolverTest, LedgerCountsWhatMirrorsReflect) {
+  SceneBuilder b;
+  b.AddBox({0, 0, 0}, {2, 2, 2}, b.AddEmitter(Rgb::Constant(1)), true);
+  b.AddQuad({0.5f, 0.1f, 0.5f}, {0.5f, 0.1f, 1.5f}, {1.5f, 0.1f, 1.5f}, {1.5f, 0.1f, 0.5f},
+            b.AddMaterial("mirror", Metal(0)));
+  SolveOptions o = Coarse();
+  o.light_samples = 256;
+  const Ledger ledger = Solve(b.Build(), o).ledger;
+  EXPECT_NEAR(ledger.mirrored[0], std::numbers::pi * (0.9 + 0.1 / 21), 0.01);   // of 2.84; irradiance is cut finitely
+  EXPECT_LT(ledger.Closure(), 1e-5);
+}
+
 // Portions make the shot field patchy and delta areas stand for it less well: 1.2 % of the light is lost at 96
 // delta areas, 0.1 % at 1536 (docs/validation.md#step-fraction).
 TEST(SolverTest, ShootingInPortionsReachesTheSameSolution) {
