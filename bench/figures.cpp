@@ -13,9 +13,6 @@
 
 #include <tbb/global_control.h>
 
-#include "render/compare.h"
-#include "render/exr.h"
-#include "render/renderer.h"
 #include "scene/gltf_scene.h"
 #include "sh/lobe.h"
 #include "sh/zernike.h"
@@ -24,7 +21,9 @@
 #include "solver/shooting.h"
 #include "solver/solver.h"
 #include "tests/support/adaptive_albedo.h"
+#include "tests/support/gloss_furnace.h"
 #include "tests/support/scene_builder.h"
+#include "tests/support/truth.h"
 
 namespace lobe {
 namespace {
@@ -223,37 +222,6 @@ NodeError Furnace(float edge, bool block) {
   return out;
 }
 
-double GlossFurnace(const Reflectance& reflectance, double* stated) {
-  test::SceneBuilder b;
-  b.AddBox({-2, -2, -2}, {2, 2, 2}, b.AddEmitter(Rgb::Constant(1)), true);
-  const uint32_t block = b.AddMaterial("block", reflectance);
-  b.AddBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, block);
-  SolveOptions o;
-  o.mesh.max_edge = 0.8f;
-  o.light_samples = 512;
-  const Solution s = Solve(b.Build(), o);
-  TableCache cache;
-  const MaterialLobes material(reflectance, o.lobes, cache);
-  *stated = std::max(material.gloss.error, material.base.error);
-  std::vector<float> basis(CoefficientCount(64));
-  double worst = 0;
-  for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
-    if (s.mesh.patches[s.mesh.node_patch[n]].material != block) continue;
-    double error2 = 0, norm2 = 0;
-    for (int i = 0; i < 32; ++i) {
-      for (int j = 0; j < 8; ++j) {
-        const double rho = std::sqrt((i + 0.5) / 32), phi = 2 * kPi * (j + 0.5) / 8;
-        const Vec3 wo(float(rho * std::cos(phi)), float(rho * std::sin(phi)), float(std::sqrt(1 - rho * rho)));
-        const double a = material.Albedo(wo.z())[0], off = s.total.Radiance(n, wo, basis.data())[0] - a;
-        error2 += off * off;
-        norm2 += a * a;
-      }
-    }
-    worst = std::max(worst, std::sqrt(error2 / norm2));
-  }
-  return worst;
-}
-
 void Furnaces() {
   std::printf("| closed room, emission 1, albedo 0.5 | nodes | mean radiance (2) | worst node |\n|---|---|---|---|\n");
   for (const bool block : {false, true}) {
@@ -264,13 +232,11 @@ void Furnaces() {
   }
   std::printf("\n| block in a white furnace | stated error | worst node, lobe against a(wo) |\n|---|---|---|\n");
   for (const float roughness : {1.0f, 0.5f, 0.3f}) {
-    double stated = 0;
-    const double worst = GlossFurnace(Metal(roughness), &stated);
-    std::printf("| metal, roughness %.1f | %.1f %% | %.2f %% |\n", roughness, 100 * stated, 100 * worst);
+    const test::GlossFurnace metal(Metal(roughness));
+    std::printf("| metal, roughness %.1f | %.1f %% | %.2f %% |\n", double(roughness), 100 * metal.stated, 100 * metal.worst);
   }
-  double stated = 0;
-  const double worst = GlossFurnace(Phong{Rgb::Constant(0.8f), 20}, &stated);
-  std::printf("| Phong 20 | %.1f %% | %.2f %% |\n", 100 * stated, 100 * worst);
+  const test::GlossFurnace phong(Phong{Rgb::Constant(0.8f), 20});
+  std::printf("| Phong 20 | %.1f %% | %.2f %% |\n", 100 * phong.stated, 100 * phong.worst);
 }
 
 void FormFactors() {
@@ -314,16 +280,7 @@ Trial SolveFile(const std::string& name, const SolveOptions& o) {
 std::string Errors(const std::string& name, const Solution& s, double* cpu) {
   std::string out;
   const double start = CpuSeconds();
-  const Renderer renderer(s);
-  for (const Camera& camera : s.scene.cameras) {
-    const std::string truth = kTests + "/truth/" + name + "." + camera.name;
-    const Image a = ReadExr(truth + ".a.exr"), b = ReadExr(truth + ".b.exr");
-    const Mask mask = ReadPngMask(truth + ".mask.png");
-    RenderOptions view;
-    view.width = a.width;
-    view.height = a.height;
-    const Image picture = renderer.Render(CameraView(camera, a.width, a.height), view, nullptr);
-    const Comparison c = Compare(picture, a, &b, &mask);
+  for (const Comparison& c : test::CompareWithTruth(s, kTests, name)) {
     char text[64];
     std::snprintf(text, sizeof text, " %.2f / %.2f |", 100 * c.pixel_error, 100 * c.block_error);
     out += text;

@@ -19,8 +19,7 @@ namespace {
 
 constexpr int kWalksPerRound = 4096, kMaxRounds = 64, kMaxBounces = 24;
 
-// Rays aimed at a side that walks have not met (chosen): seen from a twentieth of where light is, it is missed
-// once in 5e5.
+// Rays aimed at a side that walks have not met (chosen): what a twentieth of them can see is missed once in 5e5.
 constexpr int kAimedRays = 256;
 
 Vec3 CosineDirection(float u, float v) {
@@ -165,7 +164,8 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
   std::vector<uint8_t> in_sight(aims.size());
   tbb::parallel_for(size_t(0), aims.size(), [&](size_t i) {
     const auto& [side, faces] = aims[i];
-    in_sight[i] = InSight(scene, tracer, faces, Side(side % 2), points, RandomStream(Mix(Mix(seed, 0xa13), side)));
+    const RandomStream random(Mix(Mix(seed, 0xa13), side));
+    in_sight[i] = InSight(scene, tracer, faces, Side(side % 2), points, random);
   });
   for (size_t i = 0; i < aims.size(); ++i) {
     if (in_sight[i]) lit_piece[aims[i].first] = true;

@@ -132,6 +132,26 @@ TEST(RendererTest, FiltersKeepAConstantPictureConstant) {
   }
 }
 
+// A bright half-plane ends between pixels 7 and 8. Pixel 8 is dark for the box; the window's tail from half a pixel
+// on, over its integral of 3 a0: (a0 - sqrt(3) / 2 (3 a1 / 2 pi + 3 a2 / 4 pi)) / 3 a0 = 0.1186.
+TEST(RendererTest, FiltersReachAsFarAsTheySay) {
+  SceneBuilder b;
+  b.AddQuad({-3, -3, 0}, {0, -3, 0}, {0, 3, 0}, {-3, 3, 0}, b.AddEmitter(Rgb::Constant(1)));   // faces +z
+  b.AddCamera("view", {0, 0, 5}, {0, 0, 0});
+  const Solution s = Solve(b.Build(), SolveOptions{});
+  RenderOptions o;
+  o.width = o.height = 16;
+  o.samples_per_pixel = 1024;
+  for (const auto& [filter, tail] : {std::pair{PixelFilter::kBox, 0.0}, {PixelFilter::kBlackmanHarris, 0.1186}}) {
+    o.filter = filter;
+    const Image image = Renderer(s).Render(CameraView(s.scene.cameras[0], 16, 16), o, nullptr);
+    // One of 32 strata holds the edge, in 32 rows: standard deviation 0.5 / 32 / sqrt(32) = 0.003.
+    EXPECT_NEAR(image.at(8, 8)[0], tail, 0.01);
+    EXPECT_NEAR(image.at(7, 8)[0], 1 - tail, 0.01);
+    EXPECT_EQ(image.at(10, 8)[0], 0) << "beyond one and a half pixels";
+  }
+}
+
 TEST(RendererTest, OptionsOutOfRangeSaySo) {
   RenderOptions o;
   EXPECT_EQ(o.Validate(), "");

@@ -1,12 +1,11 @@
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "render/compare.h"
-#include "render/exr.h"
-#include "render/renderer.h"
 #include "scene/gltf_scene.h"
 #include "solver/solver.h"
+#include "tests/support/truth.h"
 
 namespace lobe {
 namespace {
@@ -18,18 +17,9 @@ double WorstPixelError(const std::string& name, float edge) {
   SolveOptions options;
   options.mesh.max_edge = edge;
   const Solution solution = Solve(ReadGltfScene(folder + "/scenes/" + name + ".glb"), options);
-  const Renderer renderer(solution);
   double worst = 0;
-  for (const Camera& camera : solution.scene.cameras) {
-    const std::string truth = folder + "/truth/" + name + "." + camera.name;
-    const Image a = ReadExr(truth + ".a.exr"), b = ReadExr(truth + ".b.exr");
-    const Mask mask = ReadPngMask(truth + ".mask.png");
-    RenderOptions view;
-    view.width = a.width;
-    view.height = a.height;
-    const Image picture = renderer.Render(CameraView(camera, a.width, a.height), view, nullptr);
-    const Comparison c = Compare(picture, a, &b, &mask);
-    EXPECT_NEAR(c.mean / c.reference_mean, 1, 0.02) << name << ' ' << camera.name;
+  for (const Comparison& c : test::CompareWithTruth(solution, folder, name)) {
+    EXPECT_NEAR(c.mean / c.reference_mean, 1, 0.02) << name;
     worst = std::max(worst, c.pixel_error);
   }
   return worst;

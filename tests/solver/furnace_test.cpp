@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "brdf/frame.h"
-#include "sh/lobe.h"
 #include "solver/solver.h"
+#include "tests/support/gloss_furnace.h"
 #include "tests/support/scene_builder.h"
 
 namespace lobe {
@@ -78,40 +77,10 @@ TEST(FurnaceTest, AWhiteClosedRoomStopsAndSaysWhy) {
   EXPECT_EQ(s.stop_reason, StopReason::kNotConverging);
 }
 
-// A convex glossy block in a black room whose walls emit 1: by reciprocity each node's lobe is the block's
-// directional albedo a(wo), within the error the table states.
 void ExpectGlossFurnace(const Reflectance& reflectance, const char* name) {
-  SceneBuilder b;
-  const uint32_t wall = b.AddEmitter(Rgb::Constant(1));
-  const uint32_t block = b.AddMaterial("block", reflectance);
-  b.AddBox({-2, -2, -2}, {2, 2, 2}, wall, true);
-  b.AddBox({-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, block);
-  SolveOptions o;
-  o.mesh.max_edge = 0.8f;
-  o.light_samples = 512;
-  const Solution s = Solve(b.Build(), o);
-  TableCache cache;
-  const MaterialLobes material(reflectance, o.lobes, cache);
-  const double stated = std::max(material.gloss.error, material.base.error);
-  double worst = 0;
-  std::vector<float> basis(CoefficientCount(64));
-  for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
-    if (s.mesh.patches[s.mesh.node_patch[n]].material != block) continue;
-    double error2 = 0, norm2 = 0;
-    for (int i = 0; i < 12; ++i) {
-      for (int j = 0; j < 8; ++j) {
-        // Cosine-weighted: equal areas of the projected disc.
-        const double rho = std::sqrt((i + 0.5) / 12), phi = 2 * std::numbers::pi * (j + 0.5) / 8;
-        const Vec3 wo(float(rho * std::cos(phi)), float(rho * std::sin(phi)), float(std::sqrt(1 - rho * rho)));
-        const double got = s.total.Radiance(n, wo, basis.data())[0], a = material.Albedo(wo.z())[0];
-        error2 += (got - a) * (got - a);
-        norm2 += a * a;
-      }
-    }
-    worst = std::max(worst, std::sqrt(error2 / norm2) / stated);
-  }
-  EXPECT_GT(worst, 0) << "the block has nodes";
-  EXPECT_LT(worst, 1) << name << ": stated error " << stated;
+  const test::GlossFurnace furnace(reflectance);
+  EXPECT_GT(furnace.worst, 0) << "the block has nodes";
+  EXPECT_LT(furnace.worst, furnace.stated) << name;
 }
 
 TEST(FurnaceTest, GlossyBlockShowsItsDirectionalAlbedo) {

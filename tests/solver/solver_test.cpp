@@ -154,11 +154,12 @@ TEST(SolverTest, AnOpenSceneLosesWhatEscapes) {
 TEST(SolverTest, WhatEscapesHasTheColourOfItsLamp) {
   SceneBuilder b;
   b.AddBox({0, 0, 0}, {2, 2, 2}, b.AddLambert(Rgb::Constant(0.5f)), true);
-  b.AddQuad({0.5f, 1.9f, 0.5f}, {1.5f, 1.9f, 0.5f}, {1.5f, 1.9f, 1.5f}, {0.5f, 1.9f, 1.5f}, b.AddEmitter({1, 0, 0}));
-  b.AddQuad({9, 1, 0}, {10, 1, 0}, {10, 1, 1}, {9, 1, 1}, b.AddEmitter({0, 0, 1}));
+  b.AddQuad({0.5f, 1.9f, 0.5f}, {1.5f, 1.9f, 0.5f}, {1.5f, 1.9f, 1.5f}, {0.5f, 1.9f, 1.5f},
+            b.AddEmitter(Rgb(1, 0, 0)));
+  b.AddQuad({9, 1, 0}, {10, 1, 0}, {10, 1, 1}, {9, 1, 1}, b.AddEmitter(Rgb(0, 0, 1)));
   const Ledger ledger = Solve(b.Build(), Coarse()).ledger;
   EXPECT_EQ(ledger.escaped[0], 0);
-  EXPECT_EQ(ledger.escaped[2], ledger.emitted[2]);
+  EXPECT_NEAR(ledger.escaped[2] + ledger.blocked[2], ledger.emitted[2], 1e-12) << "some meets the room's outside";
   EXPECT_LT(ledger.RelativeImbalance(), 0.05);
 }
 
@@ -172,7 +173,8 @@ TEST(SolverTest, LedgerCountsWhatMirrorsReflect) {
   SolveOptions o = Coarse();
   o.light_samples = 256;
   const Ledger ledger = Solve(b.Build(), o).ledger;
-  EXPECT_NEAR(ledger.mirrored[0], std::numbers::pi * (0.9 + 0.1 / 21), 0.01);   // of 2.84; irradiance is cut finitely
+  // 0.2 %: directions stand for delta areas, and Fresnel is convex.
+  EXPECT_NEAR(ledger.mirrored[0], std::numbers::pi * (0.9 + 0.1 / 21), 0.006);
   EXPECT_LT(ledger.Closure(), 1e-5);
 }
 
