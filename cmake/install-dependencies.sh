@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(git cmake ninja-build g++ ccache
           libeigen3-dev libembree-dev libopenmesh-dev libopenexr-dev libtbb-dev libtinygltf-dev libcli11-dev
-          nlohmann-json3-dev libpng-dev libgtest-dev libboost-dev)
+          nlohmann-json3-dev libpng-dev libgtest-dev libgmock-dev libboost-dev)
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
