@@ -32,6 +32,7 @@ std::string Text(const Comparison& c) {
 ExitCode RunCompare(const CompareFlags& flags, Console& console) {
   if (flags.output) {
     RequireExtension("-o", *flags.output, {".png"});
+    if (flags.mask) RequireOtherFile("-o", *flags.output, *flags.mask, "the mask");
     CheckWritable(*flags.output);
   }
   const Image picture = ReadExr(flags.picture), reference = ReadExr(flags.reference);

@@ -41,7 +41,10 @@ void Validate(InspectFlags* flags) {
   flags->view.Validate();
   if (flags->at) flags->point = ParseVector("--at", *flags->at);
   if (flags->pixel) flags->position = ParsePixel("--pixel", *flags->pixel);
-  if (flags->output) RequireExtension("-o", *flags->output, {".glb", ".gltf", ".png", ".svg"});
+  if (flags->output) {
+    RequireExtension("-o", *flags->output, {".glb", ".gltf", ".png", ".svg"});
+    RequireOtherFile("-o", *flags->output, flags->solution, "the solution");
+  }
 }
 
 /// The node that speaks loudest at a place of the mesh, hidden ones only when there is no other.

@@ -1,5 +1,6 @@
 // The program: flags in, words and exit code out. What each command does is in its own file.
 
+#include <charconv>
 #include <csignal>
 #include <exception>
 #include <memory>
@@ -56,11 +57,28 @@ ExitCode Run(CLI::App& app, const CommonFlags& flags, const Command& command, bo
     PrintError(std::string(e.what()) + " (lobe " + app.get_subcommands().front()->get_name() + " --help)");
     return kWrongUsage;
   } catch (const std::bad_alloc&) {
-    PrintError("out of memory");
+    const std::string name = app.get_subcommands().front()->get_name();
+    PrintError(std::string("out of memory") + (name == "solve"    ? "; longer edges (--edge) need less"
+                                               : name == "render" ? "; a smaller picture (--size) needs less"
+                                                                  : ""));
   } catch (const std::exception& e) {
     PrintError(e.what());
   }
   return kFailed;
+}
+
+/// "Could not convert: --edge = 1,2" with what was expected; empty if `words` are others.
+std::string ConversionSentence(const CLI::App& app, const std::string& words) {
+  const std::string prefix = "Could not convert: ", middle = " = ";
+  const size_t end = words.find(middle);
+  if (words.rfind(prefix, 0) != 0 || end == std::string::npos || app.get_subcommands().empty()) return {};
+  const std::string flag = words.substr(prefix.size(), end - prefix.size());
+  const CLI::Option* option = app.get_subcommands().front()->get_option_no_throw(flag);
+  if (!option) return {};
+  // In every help text N is an integer.
+  const bool integer = option->get_type_name() == "N";
+  return flag + ": '" + words.substr(end + middle.size()) + "' is not " +
+         (integer ? "a whole number, or too large" : "a number");
 }
 
 /// CLI11's words, or better ones where it does not know what was meant.
@@ -71,6 +89,13 @@ std::string UsageSentence(const CLI::App& app, const CLI::ParseError& error, int
            "' is no command; solve, render, info, inspect and compare are (lobe --help)";
   }
   std::string sentence = error.what();
+  if (const auto value = ConversionSentence(app, sentence); !value.empty()) sentence = value;
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !app.remaining(true).empty()) {
+    // CLI11 lists them backwards.
+    const std::string first = app.remaining(true).front();
+    sentence =
+        "'" + first + (first[0] == '-' ? "' is no flag of this command" : "' is one argument too many");
+  }
   sentence += chosen.empty() ? " (lobe --help)" : " (lobe " + chosen.front()->get_name() + " --help)";
   return sentence;
 }
@@ -108,9 +133,13 @@ void AddSeedFlag(CLI::App* command, uint64_t* seed) {
   command->add_option("--seed", *seed, "Seed of all random choices; the same seed gives the same bits")
       ->type_name("N")
       ->capture_default_str()
-      // CLI11 would wrap negative numbers around.
-      ->check([](const std::string& text) {
-        return text.rfind('-', 0) == 0 ? "'" + text + "' is negative" : "";
+      // CLI11 would wrap negative numbers around and cut off large ones.
+      ->check([](const std::string& text) -> std::string {
+        uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [next, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc() && next == end) return {};
+        return "'" + text + "' is not a whole number from 0 to 18446744073709551615";
       });
 }
 

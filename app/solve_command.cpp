@@ -1,6 +1,5 @@
 #include <cmath>
 #include <ctime>
-#include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
@@ -27,10 +26,7 @@ void Validate(SolveFlags& flags) {
   flags.options.lobes = flags.lobes.Options();
   if (const std::string wrong = flags.options.Validate(); !wrong.empty()) throw UsageError(wrong);
   RequireExtension("-o", flags.output, {".glb", ".gltf"});
-  std::error_code none;
-  if (std::filesystem::equivalent(flags.scene, flags.output, none)) {
-    throw UsageError("-o: " + flags.output + " is the scene itself; another name is expected");
-  }
+  RequireOtherFile("-o", flags.output, flags.scene, "the scene");
 }
 
 Scene ReadScene(const std::string& path) {

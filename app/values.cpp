@@ -82,4 +82,12 @@ void RequireExtension(const std::string& flag, const std::string& path,
   Refuse(flag, path, "a name ending in " + expected);
 }
 
+void RequireOtherFile(const std::string& flag, const std::string& path, const std::string& input,
+                      const std::string& what) {
+  std::error_code none;
+  if (std::filesystem::equivalent(path, input, none)) {
+    throw UsageError(flag + ": " + path + " is " + what + " itself; another name is expected");
+  }
+}
+
 }  // namespace lobe

@@ -31,5 +31,8 @@ std::string Extension(const std::string& path);
 /// Output files must end in one of `endings`: what is written follows from it.
 void RequireExtension(const std::string& flag, const std::string& path,
                       std::initializer_list<const char*> endings);
+/// An output that is also the input (by another name, too) would destroy it. `what`: "the scene".
+void RequireOtherFile(const std::string& flag, const std::string& path, const std::string& input,
+                      const std::string& what);
 
 }  // namespace lobe

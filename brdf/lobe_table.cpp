@@ -78,7 +78,8 @@ double ScalarTable::ErrorWithin(const ScalarTable& whole, int l) const {
   return weights > 0 ? sum / weights : 0.0;
 }
 
-ScalarTable ScalarTable::Combine(double a, const ScalarTable& f, double b, const ScalarTable& g) {
+ScalarTable ScalarTable::Combine(double a, const ScalarTable& f, double b, const ScalarTable& g,
+                                 const Eigen::VectorXd& sum_norm2) {
   if (f.knots != g.knots) throw std::invalid_argument("ScalarTable::Combine: knots differ");
   ScalarTable out;
   out.l_max = std::min(f.l_max, g.l_max);
@@ -86,6 +87,10 @@ ScalarTable ScalarTable::Combine(double a, const ScalarTable& f, double b, const
   const int rows = RowCount(out.l_max);
   out.zernike = a * f.zernike.topRows(rows) + b * g.zernike.topRows(rows);
   out.albedo = a * f.albedo + b * g.albedo;
+  if (sum_norm2.size() > 0) {
+    const Eigen::VectorXd inner_twice = sum_norm2 - f.norm2 - g.norm2;
+    out.norm2 = a * a * f.norm2 + b * b * g.norm2 + a * b * inner_twice;
+  }
   return out;
 }
 

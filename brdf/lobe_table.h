@@ -45,8 +45,10 @@ struct ScalarTable {
   /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
   static int DefaultKnots(int l_max) { return 16 + l_max; }
 
-  /// Linear combination, over equal knots; the lower degree wins. Norms cannot be added: norm2 is empty.
-  static ScalarTable Combine(double a, const ScalarTable& f, double b, const ScalarTable& g);
+  /// a f + b g, over equal knots; the lower degree wins. `sum_norm2`, the norm2 of f + g, gives the result its
+  /// norms (by polarisation) and so its Error; without it norm2 is empty.
+  static ScalarTable Combine(double a, const ScalarTable& f, double b, const ScalarTable& g,
+                             const Eigen::VectorXd& sum_norm2 = {});
 };
 
 }  // namespace lobe

@@ -213,12 +213,21 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
             [&](const Vec3d& wi, const Vec3d& wo) { return dv(wi, wo) * Pow5(1.0 - HalfCosine(wi, wo)); },
             cap, rule, knots);
       });
+      const auto sum = cache.Get(Key("ggx sum", gltf->roughness, 0, knots), [&] {
+        return ScalarTable::Build(
+            [&](const Vec3d& wi, const Vec3d& wo) { return dv(wi, wo) * (1.0 + Pow5(1.0 - HalfCosine(wi, wo))); },
+            0, rule, knots);
+      });
+      // Degree and kind follow from roughness alone, so that colours share tables. The error stated is the
+      // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
       gloss.l_max = DegreeWithin(*unit, options);
-      gloss.error = unit->Error(gloss.l_max);
+      const bool within = unit->Error(gloss.l_max) <= options.error || options.force_l_max >= 0;
+      kind_ = within ? GlossKind::kLobe : GlossKind::kSharp;
+      const float f0_mean = f0.mean();
+      gloss.error = ScalarTable::Combine(f0_mean, *unit, f90 - f0_mean, *grazing, sum->norm2).Error(gloss.l_max);
       for (int c = 0; c < 3; ++c) {
         SetChannel(gloss, c, *spline_, ScalarTable::Combine(f0[c], *unit, f90 - f0[c], *grazing));
       }
-      kind_ = gloss.error <= options.error || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
     }
   }
   const bool lambertian_base = base.l_max < 0 || base.control[0].empty();

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -151,6 +152,7 @@ Rgb Renderer::Radiance(const Ray& ray) const {
 
 Image Renderer::Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                        const std::function<bool(double)>& progress) const {
+  if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
   const auto start = std::chrono::steady_clock::now();
   Image image(options.width, options.height);
   const int side = int(std::ceil(std::sqrt(double(options.samples_per_pixel))));

@@ -41,6 +41,7 @@ class Renderer {
   ~Renderer();
 
   /// Stored mode: nearest hit, its three nodes' lobes read towards the eye, mirrors traced recursively.
+  /// `options` and `view` must agree on the size; throws std::invalid_argument if options.Validate() complains.
   /// Filters are sampled by importance, so every eye ray counts the same. `progress` gets 0..1 from one
   /// thread at a time; if it returns false the picture is abandoned (report->complete). Same bits for any
   /// number of threads.

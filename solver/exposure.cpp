@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kWalksPerRound = 4096, kMaxRounds = 64, kMaxBounces = 24;
 
-// Rays aimed at a side that walks have not met (chosen): what a twentieth of them can see is missed once in 5e5.
+// Rays aimed at a side that walks have not met (chosen): what one in twenty can see is missed once in 5e5.
 constexpr int kAimedRays = 256;
 
 Vec3 CosineDirection(float u, float v) {

@@ -9,6 +9,10 @@ std::string SolveOptions::Validate() const {
   std::ostringstream out;
   if (!(mesh.max_edge > 0) || !std::isfinite(mesh.max_edge)) {
     out << "longest edge " << mesh.max_edge << " m is out of range: a finite length above 0 is expected";
+  } else if (!(mesh.crease_angle >= 0) || !(mesh.crease_angle <= 3.15f)) {
+    out << "crease angle " << mesh.crease_angle << " is out of range: 0 to pi radians is expected";
+  } else if (!(mesh.border_inset >= 0) || !(mesh.border_inset <= 1)) {
+    out << "border inset " << mesh.border_inset << " is out of range: 0 to 1 is expected";
   } else if (lobes.l_max < 0 || lobes.l_max > 32) {
     out << "lmax " << lobes.l_max << " is out of range: 0 to 32 is expected";
   } else if (lobes.force_l_max < -1 || lobes.force_l_max > 32) {

@@ -91,6 +91,7 @@ class ProgressiveSolver {
       if (step > s_.options.max_steps) return StopReason::kStepLimit;
       if (Interrupted() || OutOfTime()) return WhyStop();
       const size_t n = s_.history.size();
+      if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
       if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
         return StopReason::kNotConverging;
       }
@@ -158,7 +159,7 @@ class ProgressiveSolver {
     Commit(received);
     StepRecord record;
     record.step = step;
-    record.residual = UnshotPower().sum() / emitted_.sum();
+    record.residual = UnshotMagnitude() / emitted_.sum();
     record.seconds = Seconds();
     record.rays = rays_;
     record.shooters = step == 0 ? uint32_t(emitters_.size()) : shooters;
@@ -215,6 +216,15 @@ class ProgressiveSolver {
   Eigen::Array3d UnshotPower() const {
     Eigen::Array3d sum = Eigen::Array3d::Zero();
     for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) sum += s_.unshot.Flux(n).cast<double>() * area_[n];
+    return sum;
+  }
+
+  // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
+  double UnshotMagnitude() const {
+    double sum = 0;
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+      sum += s_.unshot.Flux(n).cast<double>().abs().sum() * area_[n];
+    }
     return sum;
   }
 

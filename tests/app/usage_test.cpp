@@ -48,7 +48,10 @@ TEST(UsageTest, SolveFlagsOutOfRange) {
 TEST(UsageTest, ValuesThatAreNoNumbers) {
   ExpectUsageError(With(kSolve, {"--edge", "wide"}), {"edge", "wide"});
   ExpectUsageError(With(kSolve, {"--lmax", "3.5"}), {"lmax", "3.5"});
+  ExpectUsageError(With(kSolve, {"--edge", "0.4m"}), {"--edge", "'0.4m' is not a number"});
+  ExpectUsageError(With(kSolve, {"--light-samples", "99999999999"}), {"--light-samples", "too large"});
   ExpectUsageError(With(kSolve, {"--seed", "-3"}), {"seed"});
+  ExpectUsageError(With(kSolve, {"--seed", "18446744073709551616"}), {"--seed", "18446744073709551616"});
   ExpectUsageError(With(kRender, {"--spp", "many"}), {"spp", "many"});
 }
 
@@ -103,6 +106,7 @@ TEST(UsageTest, MissingAndUnknownFlags) {
   ExpectUsageError({"render", "no-solution.glb"}, {"--output"});
   ExpectUsageError({"solve", "-o", "out.glb"}, {"SCENE"});
   ExpectUsageError(With(kSolve, {"--shiny"}), {"--shiny"});
+  ExpectUsageError(With(kSolve, {"--shiny", "1"}), {"'--shiny' is no flag"});
   ExpectUsageError(With(kSolve, {"--edge"}), {"--edge"});
   ExpectUsageError(With(kSolve, {"second-scene.glb"}), {"second-scene.glb"});
   ExpectUsageError({"compare", "a.exr"}, {"REF"});
@@ -115,6 +119,21 @@ TEST(UsageTest, TheSceneIsNotOverwritten) {
   ExpectUsageError({"solve", folder.File("scene.glb"), "-o", folder.path() + "/./scene.glb"},
                    {"scene itself"});
   EXPECT_EQ(ReadWholeFile(folder.File("scene.glb")), scene);
+}
+
+TEST(UsageTest, InputsOfInspectAndCompareAreNotOverwritten) {
+  const ScratchFolder folder;
+  const std::string bytes = ReadWholeFile(ScenePath("cornell_diffuse"));
+  WriteWholeFile(folder.File("solution.glb"), bytes);
+  WriteWholeFile(folder.File("mask.png"), bytes);
+  ExpectUsageError(
+      {"inspect", folder.File("solution.glb"), "--node", "0", "-o", folder.path() + "/./solution.glb"},
+      {"solution itself"});
+  ExpectUsageError(
+      {"compare", "a.exr", "b.exr", "--mask", folder.File("mask.png"), "-o", folder.File("mask.png")},
+      {"mask itself"});
+  EXPECT_EQ(ReadWholeFile(folder.File("solution.glb")), bytes);
+  EXPECT_EQ(ReadWholeFile(folder.File("mask.png")), bytes);
 }
 
 TEST(UsageTest, HelpTeachesOnStandardOutput) {

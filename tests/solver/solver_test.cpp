@@ -159,7 +159,7 @@ TEST(SolverTest, WhatEscapesHasTheColourOfItsLamp) {
   b.AddQuad({9, 1, 0}, {10, 1, 0}, {10, 1, 1}, {9, 1, 1}, b.AddEmitter(Rgb(0, 0, 1)));
   const Ledger ledger = Solve(b.Build(), Coarse()).ledger;
   EXPECT_EQ(ledger.escaped[0], 0);
-  EXPECT_NEAR(ledger.escaped[2] + ledger.blocked[2], ledger.emitted[2], 1e-12) << "some meets the room's outside";
+  EXPECT_NEAR(ledger.escaped[2] + ledger.blocked[2], ledger.emitted[2], 1e-12) << "some meets the room";
   EXPECT_LT(ledger.RelativeImbalance(), 0.05);
 }
 
