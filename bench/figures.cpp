@@ -369,7 +369,7 @@ void Split() {
     const ShootingField emission(s.mesh, FindEmitters(s.scene));
     const ShootingField reflected(s.scene, s.mesh, s.hidden, s.unshot);
     Receiver receiver(s.mesh, tracer, materials);
-    std::vector<float> out(size_t(3) * 2 * CoefficientCount(64));
+    std::vector<float> out(size_t(3) * 2 * kMaxBasisSize);
     std::vector<std::vector<Ray>> rays;
     Received timed_sum;
     uint64_t count = 0;

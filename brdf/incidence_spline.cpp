@@ -30,9 +30,7 @@ IncidenceSpline::IncidenceSpline(int knots) : knots_(knots) {
 }
 
 IncidenceSpline::Stencil IncidenceSpline::At(float cos_theta) const {
-  const float c = std::clamp(cos_theta, 0.0f, 1.0f);
-  const float t = std::sqrt(std::max(0.0f, 1.0f - std::sqrt(c)));
-  const float s = t * float(knots_ - 1);
+  const float s = ParameterOfCosine(std::clamp(cos_theta, 0.0f, 1.0f)) * float(knots_ - 1);
   const int i = std::clamp(int(s), 0, knots_ - 2);
   const float u = s - float(i), v = 1.0f - u;
   Stencil out;

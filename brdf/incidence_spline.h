@@ -25,7 +25,11 @@ class IncidenceSpline {
   int knots() const { return knots_; }
   int bins() const { return knots_ + 1; }
 
-  static double ParameterOfCosine(double cos_theta) { return std::sqrt(1.0 - std::sqrt(cos_theta)); }
+  /// cos_theta in [0, 1].
+  template <typename Real>
+  static Real ParameterOfCosine(Real cos_theta) {
+    return std::sqrt(Real(1) - std::sqrt(cos_theta));
+  }
   static double CosineOfParameter(double t) { const double c = 1.0 - t * t; return c * c; }
   double KnotCosine(int j) const { return CosineOfParameter(double(j) / (knots_ - 1)); }
 

@@ -60,15 +60,10 @@ void IncidentMoments::Add(const Vec3& wi, const Rgb& irradiance) {
   first_bin_ = std::min({first_bin_, stencil.bin[0], stencil.bin[1]});
   last_bin_ = std::max(last_bin_, stencil.bin[3]);
 
-  const float t = std::sqrt(std::max(0.0f, 1.0f - std::sqrt(std::clamp(wi.z(), 0.0f, 1.0f))));
-  const float fine = t * ScalarTable::kFine;
-  const int i = std::min(int(fine), ScalarTable::kFine - 1);
-  const float u = fine - float(i);
+  const FineAngle at(wi.z());
   const auto rest = [&](const PartLobes& part, Rgb& sum) {
     if (part.l_max < 0) return;
-    for (int c = 0; c < 3; ++c) {
-      sum[c] += irradiance[c] * ((1 - u) * part.flux_rest[c][i] + u * part.flux_rest[c][i + 1]);
-    }
+    for (int c = 0; c < 3; ++c) sum[c] += irradiance[c] * at.Read(part.flux_rest[c]);
   };
   rest(material_->base, rest_base_);
   rest(material_->gloss, rest_gloss_);

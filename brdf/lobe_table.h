@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -9,6 +10,23 @@
 #include "brdf/incidence_spline.h"
 
 namespace lobe {
+
+/// Place of an incident angle on the fine grid of ScalarTable: kFine equal steps in the spline's parameter t.
+struct FineAngle {
+  static constexpr int kFine = 256;
+  int index;
+  float fraction;
+
+  explicit FineAngle(float cos_theta_i) {
+    const float s = IncidenceSpline::ParameterOfCosine(std::clamp(cos_theta_i, 0.0f, 1.0f)) * float(kFine);
+    index = std::min(int(s), kFine - 1);
+    fraction = s - float(index);
+  }
+  /// Linear interpolation in kFine + 1 values.
+  float Read(const std::vector<float>& values) const {
+    return (1 - fraction) * values[index] + fraction * values[index + 1];
+  }
+};
 
 /// A scalar reflectance f(wi, wo) in sr^-1, local frame, without the cosine.
 using ScalarBrdf = std::function<double(const Vec3d& wi, const Vec3d& wo)>;
@@ -26,7 +44,7 @@ struct ScalarTable {
   /// Squared cos-weighted norm of f(theta_i; .) at the knots, integral of f^2 cos.
   Eigen::VectorXd norm2;
   /// Directional albedo on a fine grid: kFine + 1 equal steps in the spline's parameter t.
-  static constexpr int kFine = 256;
+  static constexpr int kFine = FineAngle::kFine;
   Eigen::VectorXd albedo;
 
   static int RowCount(int l_max) { return (l_max / 2 + 1) * ((l_max + 1) / 2 + 1); }

@@ -116,12 +116,9 @@ std::shared_ptr<const ScalarTable> TableCache::Get(const std::string& key,
 
 Rgb PartLobes::Albedo(float cos_theta_i) const {
   if (l_max < 0) return Rgb::Zero();
-  const float t = std::sqrt(std::max(0.0f, 1.0f - std::sqrt(std::clamp(cos_theta_i, 0.0f, 1.0f))));
-  const float s = t * ScalarTable::kFine;
-  const int i = std::min(int(s), ScalarTable::kFine - 1);
-  const float u = s - float(i);
+  const FineAngle at(cos_theta_i);
   Rgb out;
-  for (int c = 0; c < 3; ++c) out[c] = (1 - u) * albedo[c][i] + u * albedo[c][i + 1];
+  for (int c = 0; c < 3; ++c) out[c] = at.Read(albedo[c]);
   return out;
 }
 

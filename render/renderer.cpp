@@ -145,7 +145,7 @@ Renderer::Renderer(const Solution& solution) : impl_(std::make_unique<Impl>(solu
 Renderer::~Renderer() = default;
 
 Rgb Renderer::Radiance(const Ray& ray) const {
-  std::vector<float> basis(CoefficientCount(64));
+  std::vector<float> basis(kMaxBasisSize);
   Impl::Sums sums;
   return impl_->Shade(ray, impl_->tracer.Intersect(ray), RenderOptions{}.max_mirror_depth, basis.data(), sums);
 }
@@ -162,7 +162,7 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
   struct Scratch {
     std::vector<Ray> rays;
     std::vector<RayHit> hits;
-    std::vector<float> basis = std::vector<float>(CoefficientCount(64));
+    std::vector<float> basis = std::vector<float>(kMaxBasisSize);
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
   const int tiles_x = (options.width + kTile - 1) / kTile, tiles_y = (options.height + kTile - 1) / kTile;

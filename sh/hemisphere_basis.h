@@ -47,6 +47,9 @@ class HemisphereBasis {
   std::vector<Real> a_, b_, c_, start_;
 };
 
+/// Scratch that holds any basis evaluation in single precision.
+inline constexpr int kMaxBasisSize = CoefficientCount(HemisphereBasis<float>::kMaxDegree);
+
 extern template class HemisphereBasis<float>;
 extern template class HemisphereBasis<double>;
 

@@ -145,7 +145,7 @@ Rgb ShootingField::Radiance(uint32_t element, const float weight[3], const Vec3&
 }
 
 Receiver::Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials)
-    : mesh_(mesh), tracer_(tracer), materials_(materials), basis_(CoefficientCount(64)) {}
+    : mesh_(mesh), tracer_(tracer), materials_(materials), basis_(kMaxBasisSize) {}
 
 void Receiver::Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
                      const Vec3& normal, const Cell& parent) {

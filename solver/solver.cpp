@@ -201,7 +201,7 @@ class ProgressiveSolver {
 
   // Power that left with `shooting`, and what of it the probes say reaches no node.
   void AccountSent(const NodeLobes& shooting) {
-    std::vector<float> basis(CoefficientCount(64));
+    std::vector<float> basis(kMaxBasisSize);
     for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
       s_.ledger.sent += shooting.Flux(n).cast<double>() * area_[n];
       for (uint32_t i = exposure_.lost_begin[n]; i < exposure_.lost_begin[n + 1]; ++i) {

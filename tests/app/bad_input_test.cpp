@@ -47,8 +47,8 @@ TEST_F(BadInputTest, EmptySceneIsRefused) {
 TEST_F(BadInputTest, DirectoryAsSceneIsRefused) { ExpectSolveFails(folder_.path(), {folder_.path()}); }
 
 TEST_F(BadInputTest, EdgesTooShortForTheMachineAreRefused) {
-  // 2e9 elements, some 400 GB; then more than can be counted.
-  for (const char* edge : {"7.2e-4", "1e-6"}) {
+  // 1.8e9 elements, some 360 GB; then more than can be counted.
+  for (const char* edge : {"8e-4", "1e-6"}) {
     ExpectOneSentence(RunQuietly({"solve", ScenePath("cornell_diffuse"), "-o", Output(), "--edge", edge}), 1,
                       {"cornell_diffuse.glb", "elements", "choose longer edges"});
     ExpectNothingLeft();

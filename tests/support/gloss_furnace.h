@@ -28,7 +28,7 @@ struct GlossFurnace {
     TableCache cache;
     const MaterialLobes material(reflectance, o.lobes, cache);
     stated = std::max(material.gloss.error, material.base.error);
-    std::vector<float> basis(CoefficientCount(64));
+    std::vector<float> basis(kMaxBasisSize);
     for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
       if (s.mesh.patches[s.mesh.node_patch[n]].material != block) continue;
       double error2 = 0, norm2 = 0;
