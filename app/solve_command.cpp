@@ -64,6 +64,8 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
   return out;
 }
 
+double Total(const Ledger::Power& power) { return power[0] + power[1] + power[2]; }
+
 ExitCode RunSolve(SolveFlags flags, Console& console) {
   Validate(flags);
   // Asked before anything is computed, so that nothing is computed in vain.
@@ -90,6 +92,12 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
 
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));
+  const double emitted = Total(solution.ledger.emitted), mirrored = Total(solution.ledger.mirrored);
+  if (mirrored > 0.001 * emitted) {
+    console.Warn(Format("%.1f", 100 * mirrored / emitted) +
+                 " % of the emitted power fell on ideal mirrors, which the solver does not follow: light thrown by "
+                 "mirrors is missing from the lobes");
+  }
   console.Say(MeshText(solution));
   console.Say(StopText(solution) + Format("; %.2f s", solution.solve_seconds) +
               Format(" (%.2f CPU s)", cpu_seconds));

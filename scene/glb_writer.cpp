@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -186,11 +188,31 @@ int GlbWriter::AddBytes(std::span<const uint8_t> values) {
   return static_cast<int>(document["accessors"].size() - 1);
 }
 
+namespace {
+
+bool IsGltf(const std::string& path) { return fs::path(path).extension() == ".gltf"; }
+fs::path BinaryBeside(const std::string& path) { return fs::path(path).replace_extension(".bin"); }
+
+// The .bin beside a .gltf may be replaced only if that .gltf is there and its own: another file of the name is
+// somebody else's data.
+void CheckBinaryIsOurs(const std::string& path) {
+  const fs::path binary = BinaryBeside(path);
+  if (!IsGltf(path) || !fs::exists(binary)) return;
+  std::ifstream file(path, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (text.find('"' + PercentEncoded(binary.filename().string()) + '"') != std::string::npos) return;
+  throw InputError(binary.string() + ": exists and does not belong to " + path +
+                   ", which would overwrite it; choose another name, or one ending in .glb");
+}
+
+}  // namespace
+
 void GlbWriter::Write(const std::string& path) {
+  CheckBinaryIsOurs(path);
   buffer_.resize((buffer_.size() + 3) / 4 * 4);
   nlohmann::json out = document;
-  const bool separate = fs::path(path).extension() == ".gltf";
-  const std::string binary_path = fs::path(path).replace_extension(".bin").string();
+  const bool separate = IsGltf(path);
+  const std::string binary_path = BinaryBeside(path).string();
   if (!buffer_.empty()) {
     nlohmann::json buffer = {{"byteLength", buffer_.size()}};
     if (separate) buffer["uri"] = PercentEncoded(fs::path(binary_path).filename().string());
@@ -235,6 +257,7 @@ void WriteFileAtomically(const std::string& path, std::span<const uint8_t> bytes
 }
 
 void CheckWritable(const std::string& path) {
+  CheckBinaryIsOurs(path);
   const fs::path target = Target(path);
   if (IsSpecial(target)) {  // opening a pipe would wait for its reader
     if (access(target.c_str(), W_OK) != 0) FailToWrite(path, errno);

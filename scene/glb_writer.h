@@ -25,7 +25,7 @@ class GlbWriter {
 
   /// Writes to a temporary name beside `path`, flushes to disk, renames: `path` is absent, what it was,
   /// or complete, whatever happens. A name ending in .gltf gets a .bin beside it (needed above 4 GiB).
-  /// Throws InputError (unwritable, a directory, disk full).
+  /// Throws InputError (unwritable, a directory, disk full, a .bin of that name which is not this file's).
   void Write(const std::string& path);
 
  private:

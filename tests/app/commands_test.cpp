@@ -75,6 +75,12 @@ TEST_F(CommandsTest, SolveSpeaksOnStandardErrorOnly) {
   EXPECT_EQ(r.err.find('\r'), std::string::npos) << "no terminal, no bar";
 }
 
+TEST_F(CommandsTest, SolveWarnsOfLightThatMirrorsWouldThrow) {
+  const ProgramResult r = RunLobe({"solve", ScenePath("furnace_glossy"), "-o", File("out.glb"), "--edge", "2"});
+  EXPECT_EQ(r.exit_code, 0);
+  EXPECT_THAT(r.err, HasSubstr("fell on ideal mirrors"));
+}
+
 TEST_F(CommandsTest, QuietIsSilent) {
   const ProgramResult r =
       RunQuietly({"solve", ScenePath("cornell_diffuse"), "-o", File("out.glb"), "--edge", "2"});

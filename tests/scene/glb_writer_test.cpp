@@ -85,6 +85,18 @@ TEST(GlbWriterTest, GltfKeepsItsDataInABinBesideIt) {
   EXPECT_EQ(file.json()["buffers"][0]["uri"], "two%20words%2B100%25.bin");
 }
 
+TEST(GlbWriterTest, NeverReplacesABinaryThatBelongsToAnotherFile) {
+  const ScratchFolder folder;
+  Sample().Write(folder.File("a.gltf"));
+  Sample().Write(folder.File("a.gltf"));   // its own may be replaced
+  std::filesystem::rename(folder.File("a.gltf"), folder.File("other.gltf"));
+  const std::string before = ReadWholeFile(folder.File("a.bin"));
+  ExpectInputError([&] { Sample().Write(folder.File("a.gltf")); }, {"a.bin", "does not belong to", "a.gltf"});
+  ExpectInputError([&] { CheckWritable(folder.File("a.gltf")); }, {"a.bin"});
+  EXPECT_EQ(ReadWholeFile(folder.File("a.bin")), before);
+  EXPECT_EQ(folder.Entries(), (std::vector<std::string>{"a.bin", "other.gltf"}));
+}
+
 TEST(GlbWriterTest, DocumentWithoutDataHasNoBinaryChunk) {
   const ScratchFolder folder;
   GlbWriter().Write(folder.File("a.glb"));
