@@ -81,7 +81,7 @@ void DrawPolarGrid(Drawing* drawing, const Point& centre, double radius, double 
                                kFaint, Anchor::kMiddle});
   }
   for (const int side : {1, -1}) {
-    const int phi = side > 0 ? phi_right : phi_right + 180;
+    const int phi = (side > 0 ? phi_right : phi_right + 180) % 360;
     drawing->Add(Drawing::Text{centre + Point(side * radius, 36), "φ " + std::to_string(phi) + "°", 12.5,
                                kInk, Anchor::kMiddle});
   }
@@ -175,17 +175,19 @@ void DrawColourBar(Drawing* drawing, const Point& corner, double width, double p
 Drawing DrawLobe(const Eigen::MatrixXd& coefficients, const std::string& title) {
   const LobeReader lobe(coefficients);
   const LobeFigures figures = MeasureLobe(coefficients);
-  const auto across = Slice(lobe, 0), along = Slice(lobe, kPi / 2);
+  // Through the peak, in whole degrees, so that neither the picture nor its scale misses it.
+  const int phi = static_cast<int>(std::lround(figures.peak_phi_degrees())) % 360;
+  const auto along = Slice(lobe, phi * kPi / 180), across = Slice(lobe, (phi + 90) * kPi / 180);
   const double full_scale = RoundUp(std::max(LargestMagnitude(across), LargestMagnitude(along)));
 
   Drawing drawing(kWidth, kHeight);
   drawing.Add(Drawing::Text{{28, 36}, title, 18, kInk});
   constexpr double kRadius = 138, kFloor = 246;
   const Point left(196, kFloor), middle(538, kFloor), right(844, 170);
-  DrawPolarGrid(&drawing, left, kRadius, full_scale, 0);
-  DrawSlice(&drawing, left, kRadius, full_scale, across);
-  DrawPolarGrid(&drawing, middle, kRadius, full_scale, 90);
-  DrawSlice(&drawing, middle, kRadius, full_scale, along);
+  DrawPolarGrid(&drawing, left, kRadius, full_scale, phi);
+  DrawSlice(&drawing, left, kRadius, full_scale, along);
+  DrawPolarGrid(&drawing, middle, kRadius, full_scale, phi + 90);
+  DrawSlice(&drawing, middle, kRadius, full_scale, across);
   DrawMap(&drawing, lobe, figures, right, 100);
   DrawColourBar(&drawing, {right.x() - 100, 312}, 200, figures.peak);
 

@@ -38,6 +38,15 @@ TEST(LobePlotTest, SvgSaysTheFigures) {
   EXPECT_THAT(svg, HasSubstr("φ 270°"));
 }
 
+// 1 + 2 (w . a) with a at azimuth 200 degrees: slices at 200 / 20 and 290 / 110.
+TEST(LobePlotTest, SlicesGoThroughThePeak) {
+  const double phi = 200 * std::numbers::pi / 180;
+  const Eigen::VectorXd lobe = ProjectCosineWeighted(
+      [&](const Vec3d& w) { return 1 + 2 * (w.x() * std::cos(phi) + w.y() * std::sin(phi)); }, 6, 6);
+  const std::string svg = LobeSvg(lobe * Eigen::RowVector3d(1, 1, 1), "");
+  for (const char* label : {"φ 200°", "φ 20°", "φ 290°", "φ 110°"}) EXPECT_THAT(svg, HasSubstr(label));
+}
+
 TEST(LobePlotTest, NegativePartsAreDashed) {
   EXPECT_THAT(LobeSvg(TiltedLobe(), ""), HasSubstr("stroke-dasharray"));
   Eigen::MatrixXd positive = Eigen::MatrixXd::Zero(1, 3);
