@@ -94,9 +94,10 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
   console.Say(LedgerText(solution.ledger));
   const double emitted = Total(solution.ledger.emitted), mirrored = Total(solution.ledger.mirrored);
   if (mirrored > 0.001 * emitted) {
-    console.Warn(Format("%.1f", 100 * mirrored / emitted) +
-                 " % of the emitted power fell on ideal mirrors, which the solver does not follow: light thrown by "
-                 "mirrors is missing from the lobes");
+    console.Warn(
+        Format("%.1f", 100 * mirrored / emitted) +
+        " % of the emitted power fell on ideal mirrors, which the solver does not follow: light thrown by "
+        "mirrors is missing from the lobes");
   }
   console.Say(MeshText(solution));
   console.Say(StopText(solution) + Format("; %.2f s", solution.solve_seconds) +

@@ -29,7 +29,7 @@ namespace lobe {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const std::string kTests = "tests";   // run from the project's root
+const std::string kTests = "tests";  // run from the project's root
 
 double CpuSeconds() {
   timespec t;
@@ -115,13 +115,20 @@ void Flux() {
   MetallicRoughness coat = Metal(0.3f);
   coat.metallic = 0;
   models.push_back({"dielectric,", coat, 0.09});
-  for (const float n : {5.0f, 20.0f, 200.0f}) models.push_back({"", Phong{Rgb::Constant(1), n}, 1 / std::sqrt(n + 1.0)});
+  for (const float n : {5.0f, 20.0f, 200.0f})
+    models.push_back({"", Phong{Rgb::Constant(1), n}, 1 / std::sqrt(n + 1.0)});
   for (const float a : {0.1f, 0.4f}) models.push_back({"", Ward{Rgb::Constant(1), a}, a});
-  std::printf("| model | at knots, worst | between knots to 89 degrees, worst of l_max 0, 6, 12, 24 |\n|---|---|---|\n");
+  std::printf(
+      "| model | at knots, worst | between knots to 89 degrees, worst of l_max 0, 6, 12, 24 "
+      "|\n|---|---|---|\n");
   TableCache cache;
   for (const Model& model : models) {
-    const ScalarBrdf gloss = [&](const Vec3d& a, const Vec3d& b) { return double(EvaluateGloss(model.reflectance, a, b)[0]); };
-    const ScalarBrdf base = [&](const Vec3d& a, const Vec3d& b) { return double(EvaluateBase(model.reflectance, a, b)[0]); };
+    const ScalarBrdf gloss = [&](const Vec3d& a, const Vec3d& b) {
+      return double(EvaluateGloss(model.reflectance, a, b)[0]);
+    };
+    const ScalarBrdf base = [&](const Vec3d& a, const Vec3d& b) {
+      return double(EvaluateBase(model.reflectance, a, b)[0]);
+    };
     const auto table = ScalarTable::Build(gloss, 0, HalfVectorRule{.width = model.width}, 24);
     const IncidenceSpline spline(24);
     double at_knots = 0, between = 0;
@@ -132,7 +139,8 @@ void Flux() {
     for (const double degrees : {2.0, 17.0, 38.0, 55.5, 69.0, 79.0, 85.2, 88.0, 89.0}) {
       const double c = std::cos(degrees * kPi / 180), s = std::sqrt(1 - c * c);
       double exact = test::AdaptiveAlbedo(gloss, c, model.width);
-      if (EvaluateBase(model.reflectance, Vec3d(0, 0, 1), Vec3d(0, 0, 1))[0] > 0) exact += test::AdaptiveAlbedo(base, c, 1);
+      if (EvaluateBase(model.reflectance, Vec3d(0, 0, 1), Vec3d(0, 0, 1))[0] > 0)
+        exact += test::AdaptiveAlbedo(base, c, 1);
       for (const int l_max : {0, 6, 12, 24}) {
         LobeOptions options;
         options.force_l_max = l_max;
@@ -140,22 +148,25 @@ void Flux() {
         IncidentMoments moments;
         moments.Start(material);
         moments.Add(Vec3(float(0.6 * s), float(0.8 * s), float(c)), Rgb::Constant(1));
-        Eigen::MatrixXf b = Eigen::MatrixXf::Zero(material.base.count(), 3), g = Eigen::MatrixXf::Zero(material.gloss.count(), 3);
+        Eigen::MatrixXf b = Eigen::MatrixXf::Zero(material.base.count(), 3),
+                        g = Eigen::MatrixXf::Zero(material.gloss.count(), 3);
         moments.Finish(b.data(), g.data());
         double flux = LobeFlux(g.cast<double>())(0);
         if (b.rows() > 0) flux += LobeFlux(b.cast<double>())(0);
         between = std::max(between, std::abs(flux - exact));
       }
     }
-    std::printf("| %s %s | %.0e | %.0e |\n", model.name, Describe(model.reflectance).c_str(), at_knots, between);
+    std::printf("| %s %s | %.0e | %.0e |\n", model.name, Describe(model.reflectance).c_str(), at_knots,
+                between);
   }
 }
 
-// Between knots: the spline's lobe against a projection made at that angle, cos-weighted relative L2, and its flux
-// before the rest is added.
+// Between knots: the spline's lobe against a projection made at that angle, cos-weighted relative L2, and its
+// flux before the rest is added.
 void Knots() {
-  std::printf("| roughness | l_max | knots | worst flux error before the rest | worst lobe error to 85 degrees |\n"
-              "|---|---|---|---|---|\n");
+  std::printf(
+      "| roughness | l_max | knots | worst flux error before the rest | worst lobe error to 85 degrees |\n"
+      "|---|---|---|---|---|\n");
   for (const double roughness : {1.0, 0.5, 0.3}) {
     for (const int l_max : {12, 20}) {
       for (const int knots : {12, 16, 24, 36}) {
@@ -177,7 +188,8 @@ void Knots() {
           for (int n = 0; n <= l_max; ++n) {
             for (int m = n % 2; m <= n; m += 2) {
               const int row = ScalarTable::RowIndex(n, m);
-              const Eigen::MatrixXd control = spline.ControlValues(table.zernike.row(row).transpose(), m % 2 == 1);
+              const Eigen::MatrixXd control =
+                  spline.ControlValues(table.zernike.row(row).transpose(), m % 2 == 1);
               for (int k = 0; k < 4; ++k) {
                 z[row] += (k == 0 && s.mirrored && m % 2 == 1 ? -1 : 1) * s.weight[k] * control(s.bin[k], 0);
               }
@@ -223,25 +235,32 @@ NodeError Furnace(float edge, bool block) {
 }
 
 void Furnaces() {
-  std::printf("| closed room, emission 1, albedo 0.5 | nodes | mean radiance (2) | worst node |\n|---|---|---|---|\n");
+  std::printf(
+      "| closed room, emission 1, albedo 0.5 | nodes | mean radiance (2) | worst node "
+      "|\n|---|---|---|---|\n");
   for (const bool block : {false, true}) {
     for (const float edge : {1.0f, 0.5f, 0.25f}) {
       const NodeError e = Furnace(edge, block);
-      std::printf("| %s | %zu | %.4f | %.2f %% |\n", block ? "with a floating block" : "empty", e.nodes, e.mean, 100 * e.worst);
+      std::printf("| %s | %zu | %.4f | %.2f %% |\n", block ? "with a floating block" : "empty", e.nodes,
+                  e.mean, 100 * e.worst);
     }
   }
-  std::printf("\n| block in a white furnace | stated error | worst node, lobe against a(wo) |\n|---|---|---|\n");
+  std::printf(
+      "\n| block in a white furnace | stated error | worst node, lobe against a(wo) |\n|---|---|---|\n");
   for (const float roughness : {1.0f, 0.5f, 0.3f}) {
     const test::GlossFurnace metal(Metal(roughness));
-    std::printf("| metal, roughness %.1f | %.1f %% | %.2f %% |\n", double(roughness), 100 * metal.stated, 100 * metal.worst);
+    std::printf("| metal, roughness %.1f | %.1f %% | %.2f %% |\n", double(roughness), 100 * metal.stated,
+                100 * metal.worst);
   }
   const test::GlossFurnace phong(Phong{Rgb::Constant(0.8f), 20});
   std::printf("| Phong 20 | %.1f %% | %.2f %% |\n", 100 * phong.stated, 100 * phong.worst);
 }
 
 void FormFactors() {
-  const double parallel = 2 / kPi * (std::log(std::sqrt(4.0 / 3)) + 2 * std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) - kPi / 2);
-  const double upright = 1 / kPi * (kPi / 2 - std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) + 0.25 * std::log(0.75));
+  const double parallel =
+      2 / kPi * (std::log(std::sqrt(4.0 / 3)) + 2 * std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) - kPi / 2);
+  const double upright =
+      1 / kPi * (kPi / 2 - std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) + 0.25 * std::log(0.75));
   std::printf("| unit squares | closed form | edge 0.25 | 0.1 | 0.05 |\n|---|---|---|---|---|\n");
   for (const bool is_parallel : {true, false}) {
     const double exact = is_parallel ? parallel : upright;
@@ -252,7 +271,7 @@ void FormFactors() {
       if (is_parallel) {
         b.AddQuad({0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}, lamp);
       } else {
-        b.AddQuad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, lamp);   // faces +x
+        b.AddQuad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, lamp);  // faces +x
       }
       b.AddQuad({0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}, grey);
       SolveOptions o;
@@ -294,13 +313,17 @@ void Row(const std::string& label, const std::string& scene, const SolveOptions&
   double view = 0;
   const std::string errors = Errors(scene, t.solution, &view);
   std::printf("| %s | %s | %zu | %.1f | %.2f |%s %.2f %% |\n", scene.c_str(), label.c_str(),
-              t.solution.mesh.node_count(), t.cpu, view, errors.c_str(), 100 * t.solution.ledger.RelativeImbalance());
+              t.solution.mesh.node_count(), t.cpu, view, errors.c_str(),
+              100 * t.solution.ledger.RelativeImbalance());
   std::fflush(stdout);
 }
 
 void Header(const char* what) {
-  std::printf("| scene | %s | nodes | solve, CPU s | view, CPU s | view0 pixel / block %% | view1 pixel / block %% | imbalance |\n"
-              "|---|---|---|---|---|---|---|---|\n", what);
+  std::printf(
+      "| scene | %s | nodes | solve, CPU s | view, CPU s | view0 pixel / block %% | view1 pixel / block %% | "
+      "imbalance |\n"
+      "|---|---|---|---|---|---|---|---|\n",
+      what);
 }
 
 const char* const kBoxes[] = {"cornell_diffuse", "cornell_glossy"};
@@ -334,30 +357,39 @@ void Sweep(const char* what, const std::vector<T>& values, const std::function<v
 }
 
 void LightSamples() {
-  Sweep<int>("light samples", {8, 16, 32, 64, 128, 256}, [](SolveOptions& o, int v) { o.light_samples = v; }, {kBoxes[0]});
+  Sweep<int>("light samples", {8, 16, 32, 64, 128, 256}, [](SolveOptions& o, int v) { o.light_samples = v; },
+             {kBoxes[0]});
 }
 void DeltaAreas() {
-  Sweep<int>("delta areas", {32, 64, 128, 256, 512, 1024}, [](SolveOptions& o, int v) { o.delta_areas = v; }, {kBoxes[0], kBoxes[1]});
+  Sweep<int>("delta areas", {32, 64, 128, 256, 512, 1024}, [](SolveOptions& o, int v) { o.delta_areas = v; },
+             {kBoxes[0], kBoxes[1]});
 }
 void Portions() {
-  Sweep<double>("step fraction", {1, 0.9, 0.5, 0.25}, [](SolveOptions& o, double v) { o.step_fraction = v; }, {kBoxes[0]});
+  Sweep<double>("step fraction", {1, 0.9, 0.5, 0.25}, [](SolveOptions& o, double v) { o.step_fraction = v; },
+                {kBoxes[0]});
 }
 void Border() {
-  Sweep<double>("border inset", {0.001, 0.02, 0.1, 0.3}, [](SolveOptions& o, double v) { o.mesh.border_inset = float(v); }, {kBoxes[0]});
+  Sweep<double>("border inset", {0.001, 0.02, 0.1, 0.3},
+                [](SolveOptions& o, double v) { o.mesh.border_inset = float(v); }, {kBoxes[0]});
 }
 void LobeError() {
-  Sweep<double>("lobe error, lmax 20", {0.5, 0.3, 0.2, 0.1, 0.05}, [](SolveOptions& o, double v) { o.lobes.error = v; }, {kBoxes[1]});
-  Sweep<int>("lmax, lobe error 10 %", {0, 4, 8, 12, 16, 20, 24}, [](SolveOptions& o, int v) { o.lobes.l_max = v; }, {kBoxes[1]});
+  Sweep<double>("lobe error, lmax 20", {0.5, 0.3, 0.2, 0.1, 0.05},
+                [](SolveOptions& o, double v) { o.lobes.error = v; }, {kBoxes[1]});
+  Sweep<int>("lmax, lobe error 10 %", {0, 4, 8, 12, 16, 20, 24},
+             [](SolveOptions& o, int v) { o.lobes.l_max = v; }, {kBoxes[1]});
 }
 void Residual() {
-  Sweep<double>("residual", {0.1, 0.01, 1e-3, 1e-4}, [](SolveOptions& o, double v) { o.residual = v; }, {kBoxes[0]});
+  Sweep<double>("residual", {0.1, 0.01, 1e-3, 1e-4}, [](SolveOptions& o, double v) { o.residual = v; },
+                {kBoxes[0]});
 }
 
 // One thread: gathering emission and the first reflected step, against Embree alone over the very same rays.
 void Split() {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  std::printf("| scene | rays | million rays/s, Embree alone | gathering over Embree alone, median of 5 | cutting and lobe reads | rays | accumulation |\n"
-              "|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| scene | rays | million rays/s, Embree alone | gathering over Embree alone, median of 5 | cutting "
+      "and lobe reads | rays | accumulation |\n"
+      "|---|---|---|---|---|---|---|\n");
   for (const char* name : kBoxes) {
     SolveOptions o;
     o.max_steps = 0;
@@ -378,8 +410,9 @@ void Split() {
         for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
           if (s.hidden[n]) continue;
           std::fill(out.begin(), out.end(), 0.0f);
-          const Received r = receiver.Gather(n, *field, field == &emission ? o.light_samples : o.delta_areas,
-                                             field == &emission ? 0.0f : s.direct.Flux(n).sum(), 1, out.data(), timed);
+          const Received r =
+              receiver.Gather(n, *field, field == &emission ? o.light_samples : o.delta_areas,
+                              field == &emission ? 0.0f : s.direct.Flux(n).sum(), 1, out.data(), timed);
           timed_sum.seconds_cutting += r.seconds_cutting;
           timed_sum.seconds_rays += r.seconds_rays;
           timed_sum.seconds_accumulating += r.seconds_accumulating;
@@ -408,18 +441,26 @@ void Split() {
     }
     std::sort(ratios.begin(), ratios.end());
     std::sort(rates.begin(), rates.end());
-    std::printf("| %s | %.2f M | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n", name, double(count) * 1e-6, rates[2], ratios[2],
-                100 * timed_sum.seconds_cutting / whole, 100 * timed_sum.seconds_rays / whole,
-                100 * timed_sum.seconds_accumulating / whole);
+    std::printf("| %s | %.2f M | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n", name, double(count) * 1e-6,
+                rates[2], ratios[2], 100 * timed_sum.seconds_cutting / whole,
+                100 * timed_sum.seconds_rays / whole, 100 * timed_sum.seconds_accumulating / whole);
   }
 }
 
-const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {
-    {"basis", Basis},       {"degree", Degree},       {"flux", Flux},
-    {"knots", Knots},         {"furnaces", Furnaces},
-    {"form-factors", FormFactors}, {"cornell", Cornell}, {"light-samples", LightSamples},
-    {"delta-areas", DeltaAreas},   {"step-fraction", Portions}, {"border", Border},
-    {"lobe-error", LobeError},     {"residual", Residual},      {"split", Split}};
+const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"basis", Basis},
+                                                                            {"degree", Degree},
+                                                                            {"flux", Flux},
+                                                                            {"knots", Knots},
+                                                                            {"furnaces", Furnaces},
+                                                                            {"form-factors", FormFactors},
+                                                                            {"cornell", Cornell},
+                                                                            {"light-samples", LightSamples},
+                                                                            {"delta-areas", DeltaAreas},
+                                                                            {"step-fraction", Portions},
+                                                                            {"border", Border},
+                                                                            {"lobe-error", LobeError},
+                                                                            {"residual", Residual},
+                                                                            {"split", Split}};
 
 }  // namespace
 }  // namespace lobe

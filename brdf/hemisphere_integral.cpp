@@ -39,10 +39,10 @@ void HalfVectorRule::ForEach(double cos_theta_i,
       const double sin_h = std::sin(theta), cos_h = std::cos(theta);
       const double wi_h = si * sin_h * cos_phi + ci * cos_h;
       Vec3d wo(2.0 * wi_h * sin_h * cos_phi - si, 2.0 * wi_h * sin_h * sin_phi, 2.0 * wi_h * cos_h - ci);
-      if (wo.z() <= 0.0 || wi_h <= 0.0) continue;   // rounding at the end of the interval
+      if (wo.z() <= 0.0 || wi_h <= 0.0) continue;  // rounding at the end of the interval
       wo.normalize();
-      const double weight = azimuth_weight * polar.weights[j] * 3.0 * v * v * x_max * width * std::cosh(x) * sin_h *
-                            4.0 * wi_h;             // d omega_o = 4 (wi.h) d omega_h
+      const double weight = azimuth_weight * polar.weights[j] * 3.0 * v * v * x_max * width * std::cosh(x) *
+                            sin_h * 4.0 * wi_h;  // d omega_o = 4 (wi.h) d omega_h
       visit(wo, weight);
     }
   }

@@ -15,7 +15,7 @@ struct HalfVectorRule {
   double width = 1;
   /// Defaults give the albedo of GGX to 1e-8 for every roughness and angle (docs/validation.md#flux).
   int polar_points = 40;
-  int azimuth_points = 64;   ///< over half a turn: the integrand is even in azimuth
+  int azimuth_points = 64;  ///< over half a turn: the integrand is even in azimuth
 
   /// Calls visit(wo, weight) for points covering phi_o in both halves by symmetry: integral of g(wo)
   /// d omega_o = sum weight g(wo) for g even in y. No cosine in the weight.

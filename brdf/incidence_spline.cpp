@@ -10,7 +10,8 @@ namespace lobe {
 
 IncidenceSpline::IncidenceSpline(int knots) : knots_(knots) {
   if (knots < 5) {
-    throw std::invalid_argument("IncidenceSpline: " + std::to_string(knots) + " knots given, at least 5 expected");
+    throw std::invalid_argument("IncidenceSpline: " + std::to_string(knots) +
+                                " knots given, at least 5 expected");
   }
   const int n = knots_;
   for (const bool odd : {false, true}) {
@@ -47,7 +48,7 @@ IncidenceSpline::Stencil IncidenceSpline::At(float cos_theta) const {
 Eigen::MatrixXd IncidenceSpline::ControlValues(const Eigen::MatrixXd& values, bool odd) const {
   if (values.rows() != knots_) throw std::invalid_argument("IncidenceSpline: one row per knot expected");
   Eigen::MatrixXd with_parity = values;
-  if (odd) with_parity.row(0).setZero();   // exact where quadrature left rounding
+  if (odd) with_parity.row(0).setZero();  // exact where quadrature left rounding
   return (odd ? solve_odd_ : solve_even_) * with_parity;
 }
 

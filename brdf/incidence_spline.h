@@ -30,7 +30,10 @@ class IncidenceSpline {
   static Real ParameterOfCosine(Real cos_theta) {
     return std::sqrt(Real(1) - std::sqrt(cos_theta));
   }
-  static double CosineOfParameter(double t) { const double c = 1.0 - t * t; return c * c; }
+  static double CosineOfParameter(double t) {
+    const double c = 1.0 - t * t;
+    return c * c;
+  }
   double KnotCosine(int j) const { return CosineOfParameter(double(j) / (knots_ - 1)); }
 
   /// The four bins that matter at one angle and their weights. On the first interval bin[0] is the

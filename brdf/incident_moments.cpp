@@ -78,7 +78,7 @@ void IncidentMoments::FinishPart(const PartLobes& part, const Rgb& rest, float* 
   if (part.l_max < 0) return;
   const int rows = part.RowCount(), l_max = part.l_max;
   for (int c = 0; c < 3; ++c) {
-    product_.assign(2 * rows, 0.0f);   // cosine, then sine rows, ordered as PartLobes::Row
+    product_.assign(2 * rows, 0.0f);  // cosine, then sine rows, ordered as PartLobes::Row
     float* cosine = product_.data();
     float* sine = cosine + rows;
     for (int bin = first_bin_; bin <= last_bin_; ++bin) {

@@ -30,9 +30,9 @@ class IncidentMoments {
 
   const MaterialLobes* material_ = nullptr;
   int l_max_ = -1, stride_ = 0;
-  int first_bin_ = 0, last_bin_ = -1;   // those touched since Start
-  std::vector<float> moments_;          // [bin][channel][cos 0..l_max, sin 0..l_max]
-  Rgb rest_base_, rest_gloss_;          // irradiance x what the spline's flux lacks
+  int first_bin_ = 0, last_bin_ = -1;  // those touched since Start
+  std::vector<float> moments_;         // [bin][channel][cos 0..l_max, sin 0..l_max]
+  Rgb rest_base_, rest_gloss_;         // irradiance x what the spline's flux lacks
   std::vector<float> azimuth_, product_;
 };
 

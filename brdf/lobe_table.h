@@ -48,7 +48,7 @@ struct ScalarTable {
   Eigen::VectorXd albedo;
 
   static int RowCount(int l_max) { return (l_max / 2 + 1) * ((l_max + 1) / 2 + 1); }
-  static int RowIndex(int n, int m);   ///< n - m even, 0 <= m <= n
+  static int RowIndex(int n, int m);  ///< n - m even, 0 <= m <= n
 
   /// Flux-weighted relative L2 error of cutting at degree `l`: for each theta_i
   /// ||f - f^|| / ||f|| (cos-weighted over wo), averaged with weight albedo cos sin.
@@ -63,8 +63,8 @@ struct ScalarTable {
   /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
   static int DefaultKnots(int l_max) { return 16 + l_max; }
 
-  /// a f + b g, over equal knots; the lower degree wins. `sum_norm2`, the norm2 of f + g, gives the result its
-  /// norms (by polarisation) and so its Error; without it norm2 is empty.
+  /// a f + b g, over equal knots; the lower degree wins. `sum_norm2`, the norm2 of f + g, gives the result
+  /// its norms (by polarisation) and so its Error; without it norm2 is empty.
   static ScalarTable Combine(double a, const ScalarTable& f, double b, const ScalarTable& g,
                              const Eigen::VectorXd& sum_norm2 = {});
 };

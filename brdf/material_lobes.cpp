@@ -11,7 +11,8 @@
 namespace lobe {
 namespace {
 
-// The base under a coat is smooth: this degree leaves less than kBaseError of it out (docs/validation.md#base).
+// The base under a coat is smooth: this degree leaves less than kBaseError of it out
+// (docs/validation.md#base).
 constexpr int kBaseDegreeCap = 8;
 constexpr double kBaseError = 0.01;
 
@@ -83,7 +84,8 @@ Rgb LambertPart(PartLobes& part, const Rgb& albedo) {
 void SplineOfLambert(PartLobes& part, const IncidenceSpline& spline) {
   if (part.l_max != 0) return;
   for (int c = 0; c < 3; ++c) {
-    const float coefficient = part.albedo[c][0] / float(std::numbers::pi) * std::sqrt(2.0f * float(std::numbers::pi));
+    const float coefficient =
+        part.albedo[c][0] / float(std::numbers::pi) * std::sqrt(2.0f * float(std::numbers::pi));
     part.control[c].assign(spline.bins(), coefficient);
   }
 }
@@ -99,10 +101,14 @@ int DegreeWithin(const ScalarTable& table, const LobeOptions& options) {
 
 const char* Name(GlossKind kind) {
   switch (kind) {
-    case GlossKind::kNone: return "none";
-    case GlossKind::kLobe: return "lobe";
-    case GlossKind::kSharp: return "sharp";
-    case GlossKind::kMirror: return "mirror";
+    case GlossKind::kNone:
+      return "none";
+    case GlossKind::kLobe:
+      return "lobe";
+    case GlossKind::kSharp:
+      return "sharp";
+    case GlossKind::kMirror:
+      return "mirror";
   }
   return "";
 }
@@ -148,14 +154,16 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
     diffuse_albedo_ = LambertPart(base, lambert->albedo);
   } else if (const auto* phong = std::get_if<Phong>(&reflectance)) {
     const Reflectance white = Phong{Rgb::Constant(1), phong->exponent};
-    gloss_from("phong", phong->exponent, std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
-               [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
-               phong->albedo);
+    gloss_from(
+        "phong", phong->exponent, std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
+        [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
+        phong->albedo);
   } else if (const auto* ward = std::get_if<Ward>(&reflectance)) {
     const Reflectance white = Ward{Rgb::Constant(1), ward->alpha};
-    gloss_from("ward", ward->alpha, std::min(1.0f, ward->alpha),
-               [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
-               ward->albedo);
+    gloss_from(
+        "ward", ward->alpha, std::min(1.0f, ward->alpha),
+        [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
+        ward->albedo);
   } else if (const auto* gltf = std::get_if<MetallicRoughness>(&reflectance)) {
     const Rgb f0 = gltf->F0();
     const float f90 = gltf->F90();
@@ -212,16 +220,20 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
       });
       const auto sum = cache.Get(Key("ggx sum", gltf->roughness, 0, knots), [&] {
         return ScalarTable::Build(
-            [&](const Vec3d& wi, const Vec3d& wo) { return dv(wi, wo) * (1.0 + Pow5(1.0 - HalfCosine(wi, wo))); },
+            [&](const Vec3d& wi, const Vec3d& wo) {
+              return dv(wi, wo) * (1.0 + Pow5(1.0 - HalfCosine(wi, wo)));
+            },
             0, rule, knots);
       });
       // Degree and kind follow from roughness alone, so that colours share tables. The error stated is the
-      // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
+      // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing
+      // angles.
       gloss.l_max = DegreeWithin(*unit, options);
       const bool within = unit->Error(gloss.l_max) <= options.error || options.force_l_max >= 0;
       kind_ = within ? GlossKind::kLobe : GlossKind::kSharp;
       const float f0_mean = f0.mean();
-      gloss.error = ScalarTable::Combine(f0_mean, *unit, f90 - f0_mean, *grazing, sum->norm2).Error(gloss.l_max);
+      gloss.error =
+          ScalarTable::Combine(f0_mean, *unit, f90 - f0_mean, *grazing, sum->norm2).Error(gloss.l_max);
       for (int c = 0; c < 3; ++c) {
         SetChannel(gloss, c, *spline_, ScalarTable::Combine(f0[c], *unit, f90 - f0[c], *grazing));
       }

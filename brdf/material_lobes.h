@@ -27,8 +27,8 @@ struct LobeOptions {
   /// Cap on the degree of a lobe, inclusive, 0..32. Memory and time per glossy node grow as
   /// (l_max+1)(l_max+2)/2. Default measured in docs/validation.md#degree.
   int l_max = 20;
-  /// Flux-weighted error (0.1 = 10 %) a lobe may have; the smallest degree within it is taken (for GGX with F = 1).
-  /// Default measured in docs/validation.md#degree.
+  /// Flux-weighted error (0.1 = 10 %) a lobe may have; the smallest degree within it is taken (for GGX with F
+  /// = 1). Default measured in docs/validation.md#degree.
   double error = 0.10;
   /// Gives every gloss part exactly this degree; -1: choose by error.
   int force_l_max = -1;
@@ -36,9 +36,10 @@ struct LobeOptions {
 
 /// One part (base or gloss) of a material as lobes, three channels.
 struct PartLobes {
-  int l_max = -1;                        ///< -1: the part is black
-  /// Flux-weighted error of the degree taken (docs/conventions.md#basis), 0 when exact. For GGX the degree is chosen
-  /// on F = 1, by roughness alone; this is the error with the material's own Fresnel, larger for dielectrics.
+  int l_max = -1;  ///< -1: the part is black
+  /// Flux-weighted error of the degree taken (docs/conventions.md#basis), 0 when exact. For GGX the degree is
+  /// chosen on F = 1, by roughness alone; this is the error with the material's own Fresnel, larger for
+  /// dielectrics.
   double error = 0;
   /// Control values over the incidence spline, control[c][bin * RowCount() + Row(l, m)], m >= 0: the H_lm
   /// coefficients of the light leaving for irradiance 1 at incident azimuth 0.
@@ -74,14 +75,14 @@ class MaterialLobes {
   GlossKind kind() const { return kind_; }
   /// Base and gloss are Lambertian or black: nodes hold one coefficient and never meet a lobe routine.
   bool diffuse() const { return diffuse_; }
-  const IncidenceSpline& spline() const { return *spline_; }   ///< common to both parts; not for diffuse()
+  const IncidenceSpline& spline() const { return *spline_; }  ///< common to both parts; not for diffuse()
   int max_degree() const { return std::max(base.l_max, gloss.l_max); }
 
   /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it.
   Rgb Albedo(float cos_theta_i) const;
   /// Fraction reflected by the ideal mirror coat; 0 unless kind() is kMirror.
   Rgb MirrorAlbedo(float cos_theta_i) const;
-  Rgb DiffuseAlbedo() const { return diffuse_albedo_; }       ///< for diffuse() materials
+  Rgb DiffuseAlbedo() const { return diffuse_albedo_; }  ///< for diffuse() materials
 
   PartLobes base, gloss;
 

@@ -36,15 +36,15 @@ struct Ward {
 struct MetallicRoughness {
   Rgb base_color = Rgb::Constant(1);
   float metallic = 1;
-  float roughness = 1;             ///< alpha = roughness^2
+  float roughness = 1;  ///< alpha = roughness^2
   float ior = 1.5f;
   float specular = 1;
   Rgb specular_color = Rgb::Constant(1);
-  bool has_specular = false;       ///< KHR_materials_specular present: diffuse weight 1 - max F, else 1 - F
+  bool has_specular = false;  ///< KHR_materials_specular present: diffuse weight 1 - max F, else 1 - F
 
-  Rgb DiffuseColor() const;        ///< c_diff
-  Rgb F0() const;                  ///< reflectance of the coat at normal incidence
-  float F90() const;               ///< and at grazing
+  Rgb DiffuseColor() const;  ///< c_diff
+  Rgb F0() const;            ///< reflectance of the coat at normal incidence
+  float F90() const;         ///< and at grazing
   /// Schlick: f0 + (f90 - f0)(1 - cos)^5.
   Rgb Fresnel(float cos_theta) const;
 };

@@ -8,8 +8,8 @@ namespace lobe {
 
 /// Pictures of one lobe. `coefficients`: rows over the hemisphere basis, 3 columns, local frame.
 
-/// Polar slices through the azimuth of the peak and across it (radius = luminance; negative parts dashed and marked) and a
-/// disc map of the hemisphere seen from above, with numbers. SVG text.
+/// Polar slices through the azimuth of the peak and across it (radius = luminance; negative parts dashed and
+/// marked) and a disc map of the hemisphere seen from above, with numbers. SVG text.
 std::string LobeSvg(const Eigen::MatrixXd& coefficients, const std::string& title);
 /// The same picture as PNG.
 void WriteLobePng(const Eigen::MatrixXd& coefficients, const std::string& title, const std::string& path);

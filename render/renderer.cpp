@@ -20,7 +20,7 @@
 namespace lobe {
 namespace {
 
-constexpr int kTile = 8;   // pixels a side; their rays are traced together
+constexpr int kTile = 8;  // pixels a side; their rays are traced together
 
 // Inverse of the cumulative filter, one axis, tabulated.
 class FilterSampler {
@@ -75,7 +75,7 @@ struct Renderer::Impl {
   const Solution& solution;
   RayTracer tracer;
 
-  struct Sums {   // what a picture lost
+  struct Sums {  // what a picture lost
     double clamped = 0, cut_off = 0, shown = 0;
     uint64_t rays = 0;
   };
@@ -99,9 +99,10 @@ struct Renderer::Impl {
     Rgb out = Rgb::Zero();
     for (int k = 0; k < w.count; ++k) {
       const bool same_basis = planar && k > 0 && !solution.total.degrees(w.node[k]).diffuse();
-      out += w.weight[k] * (same_basis ? solution.total.RadianceFromBasis(w.node[k], basis)
-                                       : solution.total.Radiance(
-                                             w.node[k], Frame(mesh.node_normal[w.node[k]]).ToLocal(wo), basis));
+      out +=
+          w.weight[k] * (same_basis ? solution.total.RadianceFromBasis(w.node[k], basis)
+                                    : solution.total.Radiance(
+                                          w.node[k], Frame(mesh.node_normal[w.node[k]]).ToLocal(wo), basis));
     }
     return out;
   }
@@ -134,7 +135,8 @@ struct Renderer::Impl {
       // A reflection about an interpolated normal may point into the surface.
       const float into = reflected.dot(geometric);
       if (into <= 0) reflected -= (into - 1e-4f) * geometric;
-      ray = {at + geometric * tracer.epsilon(), 0.0f, reflected.normalized(), std::numeric_limits<float>::infinity()};
+      ray = {at + geometric * tracer.epsilon(), 0.0f, reflected.normalized(),
+             std::numeric_limits<float>::infinity()};
       hit = tracer.Intersect(ray);
       ++sums.rays;
     }
@@ -147,7 +149,8 @@ Renderer::~Renderer() = default;
 Rgb Renderer::Radiance(const Ray& ray) const {
   std::vector<float> basis(kMaxBasisSize);
   Impl::Sums sums;
-  return impl_->Shade(ray, impl_->tracer.Intersect(ray), RenderOptions{}.max_mirror_depth, basis.data(), sums);
+  return impl_->Shade(ray, impl_->tracer.Intersect(ray), RenderOptions{}.max_mirror_depth, basis.data(),
+                      sums);
 }
 
 Image Renderer::Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
@@ -181,7 +184,8 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
       for (int x = x0; x < x1; ++x) {
         RandomStream random(Mix(Mix(options.seed, 0xca3), uint64_t(y) * options.width + x));
         for (int s = 0; s < samples; ++s) {
-          const float u = (float(s % side) + random.Next()) / side, v = (float(s / side) + random.Next()) / side;
+          const float u = (float(s % side) + random.Next()) / side,
+                      v = (float(s / side) + random.Next()) / side;
           scratch.rays.push_back(view.EyeRay(x + 0.5f + filter.Offset(u), y + 0.5f + filter.Offset(v)));
         }
       }

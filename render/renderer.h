@@ -10,8 +10,8 @@ namespace lobe {
 
 /// How eye rays near a pixel weigh in it.
 enum class PixelFilter {
-  kBox,              ///< the pixel's square: sharpest, and what most path tracers' references use
-  kBlackmanHarris,   ///< radius 1.5 pixels (Harris 1978, 4 terms): smoother edges
+  kBox,             ///< the pixel's square: sharpest, and what most path tracers' references use
+  kBlackmanHarris,  ///< radius 1.5 pixels (Harris 1978, 4 terms): smoother edges
 };
 
 struct RenderOptions {
@@ -31,7 +31,7 @@ struct RenderReport {
   /// What the picture lost, as fractions of its mean: negative lobe values clamped to zero, and light
   /// behind more mirrors than max_mirror_depth (estimated from the throughput cut).
   double clamped = 0, cut_off = 0;
-  bool complete = true;        ///< false: stopped early
+  bool complete = true;  ///< false: stopped early
 };
 
 /// Renders views of one solution, which must outlive it; construction prepares what all views share.
@@ -41,10 +41,10 @@ class Renderer {
   ~Renderer();
 
   /// Stored mode: nearest hit, its three nodes' lobes read towards the eye, mirrors traced recursively.
-  /// `options` and `view` must agree on the size; throws std::invalid_argument if options.Validate() complains.
-  /// Filters are sampled by importance, so every eye ray counts the same. `progress` gets 0..1 from one
-  /// thread at a time; if it returns false the picture is abandoned (report->complete). Same bits for any
-  /// number of threads.
+  /// `options` and `view` must agree on the size; throws std::invalid_argument if options.Validate()
+  /// complains. Filters are sampled by importance, so every eye ray counts the same. `progress` gets 0..1
+  /// from one thread at a time; if it returns false the picture is abandoned (report->complete). Same bits
+  /// for any number of threads.
   Image Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                const std::function<bool(double)>& progress = {}) const;
 

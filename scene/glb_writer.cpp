@@ -193,8 +193,8 @@ namespace {
 bool IsGltf(const std::string& path) { return fs::path(path).extension() == ".gltf"; }
 fs::path BinaryBeside(const std::string& path) { return fs::path(path).replace_extension(".bin"); }
 
-// The .bin beside a .gltf may be replaced only if that .gltf is there and its own: another file of the name is
-// somebody else's data.
+// The .bin beside a .gltf may be replaced only if that .gltf is there and its own: another file of the name
+// is somebody else's data.
 void CheckBinaryIsOurs(const std::string& path) {
   const fs::path binary = BinaryBeside(path);
   if (!IsGltf(path) || !fs::exists(binary)) return;

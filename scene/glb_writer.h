@@ -12,7 +12,7 @@ namespace lobe {
 /// Builds a .glb: a JSON document and one binary buffer.
 class GlbWriter {
  public:
-  nlohmann::json document;   ///< accessors, bufferViews, buffers are filled by the calls below
+  nlohmann::json document;  ///< accessors, bufferViews, buffers are filled by the calls below
 
   GlbWriter();
 

@@ -26,7 +26,7 @@ class GltfFile {
   /// The document's JSON, for materials, extensions and names.
   const nlohmann::json& json() const;
 
-  int AccessorCount(int accessor) const;   ///< number of elements
+  int AccessorCount(int accessor) const;  ///< number of elements
   /// Any component type; normalised integers become floats, sparse overrides are applied.
   /// `components` per element expected (3 for VEC3); element-major result.
   /// Throws InputError naming `what` when type or range is wrong.

@@ -12,14 +12,14 @@ namespace lobe {
 struct Ray {
   Vec3 origin;
   float t_min = 0;
-  Vec3 direction;   ///< need not be unit; t is in multiples of it
+  Vec3 direction;  ///< need not be unit; t is in multiples of it
   float t_max;
 };
 
 struct RayHit {
-  uint32_t face = kNone;   ///< kNone: nothing hit
+  uint32_t face = kNone;  ///< kNone: nothing hit
   float t = 0;
-  float u = 0, v = 0;      ///< barycentrics of Face::vertex[1], [2]
+  float u = 0, v = 0;  ///< barycentrics of Face::vertex[1], [2]
   Side side = Side::kFront;
   bool hit() const { return face != kNone; }
 };

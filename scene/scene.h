@@ -16,23 +16,23 @@ namespace lobe {
 struct Material {
   std::string name;
   Reflectance reflectance = MetallicRoughness{};
-  Rgb emission = Rgb::Zero();    ///< radiance, W m^-2 sr^-1, leaving the front (both sides if double_sided)
+  Rgb emission = Rgb::Zero();  ///< radiance, W m^-2 sr^-1, leaving the front (both sides if double_sided)
   bool double_sided = false;
   bool emits() const { return (emission > 0).any(); }
 };
 
 /// An input triangle in world space, the thing rays hit. Counter-clockwise seen from its front.
 struct Face {
-  std::array<uint32_t, 3> vertex;   ///< into Scene::positions
+  std::array<uint32_t, 3> vertex;  ///< into Scene::positions
   uint32_t material;
-  uint32_t surface;                 ///< faces of one glTF node's primitive share it; welding stays inside
+  uint32_t surface;  ///< faces of one glTF node's primitive share it; welding stays inside
 };
 
 struct Camera {
   std::string name;
-  Vec3 eye, right, up, back;        ///< unit axes in world space; looks along -back
-  float fov_y = 0.7f;               ///< vertical, radians
-  float aspect = 1;                 ///< width / height
+  Vec3 eye, right, up, back;  ///< unit axes in world space; looks along -back
+  float fov_y = 0.7f;         ///< vertical, radians
+  float aspect = 1;           ///< width / height
 };
 
 /// A scene in world space, metres, Y up. Vertices are per corner group as in the file: position and
@@ -40,9 +40,9 @@ struct Camera {
 struct Scene {
   std::string path;
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;        ///< unit; flat ones where the file has none
+  std::vector<Vec3> normals;  ///< unit; flat ones where the file has none
   std::vector<Face> faces;
-  std::vector<std::string> surface_names;   ///< per Face::surface, glTF node name
+  std::vector<std::string> surface_names;  ///< per Face::surface, glTF node name
   std::vector<Material> materials;
   std::vector<Camera> cameras;
   /// One sentence each: what the file asks for that is not read, and what is used instead.
@@ -52,7 +52,7 @@ struct Scene {
   std::array<Vec3, 3> Corners(const Face& f) const {
     return {positions[f.vertex[0]], positions[f.vertex[1]], positions[f.vertex[2]]};
   }
-  Vec3 GeometricNormal(const Face& f) const;    ///< unit
+  Vec3 GeometricNormal(const Face& f) const;  ///< unit
   float Area(const Face& f) const;
   Eigen::AlignedBox3f Bounds() const;
   /// Throws InputError naming the camera asked for and those there are.

@@ -20,7 +20,8 @@ double Alpha(int l, int m) {
 
 template <typename Real>
 inline __attribute__((always_inline)) void EvaluateOne(int l_max, const Real* a, const Real* b, const Real* c,
-                                                       const Real* start, Real x, Real y, Real z2, Real* out) {
+                                                       const Real* start, Real x, Real y, Real z2,
+                                                       Real* out) {
   constexpr int kSize = HemisphereBasis<Real>::kMaxDegree + 1;
   Real cos_m[kSize], sin_m[kSize], q[kSize], q_before[kSize];
   cos_m[0] = 1;
@@ -34,7 +35,7 @@ inline __attribute__((always_inline)) void EvaluateOne(int l_max, const Real* a,
     q_before[m] = 0;
   }
   for (int j = 0;; ++j) {
-    const int orders = l_max - 2 * j + 1;   // m = 0 .. l_max - 2 j
+    const int orders = l_max - 2 * j + 1;  // m = 0 .. l_max - 2 j
     if (j > 0) {
       const int at = StepOffset(l_max, j);
       for (int m = 0; m < orders; ++m) {
@@ -45,9 +46,9 @@ inline __attribute__((always_inline)) void EvaluateOne(int l_max, const Real* a,
     }
     for (int m = 0; m < orders; ++m) {
       const int l = m + 2 * j;
-      Real* band = out + l * (l + 1) / 2 + j;   // order -m; order +m is m further on
+      Real* band = out + l * (l + 1) / 2 + j;  // order -m; order +m is m further on
       band[0] = q[m] * sin_m[m];
-      band[m] = q[m] * cos_m[m];                // m = 0 overwrites the zero above
+      band[m] = q[m] * cos_m[m];  // m = 0 overwrites the zero above
     }
     if (orders <= 2) break;
   }
@@ -167,8 +168,8 @@ void HemisphereBasis<Real>::EvaluateBatch(const Real* x, const Real* y, const Re
   for (int begin = 0; begin < count; begin += 16) {
     const int lanes = std::min(16, count - begin);
     if constexpr (sizeof(Real) == 4) {
-      LanesFloat(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), x + begin, y + begin, z + begin, lanes,
-                 count, out + begin);
+      LanesFloat(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), x + begin, y + begin, z + begin,
+                 lanes, count, out + begin);
     } else {
       LanesDouble(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), x + begin, y + begin, z + begin,
                   lanes, count, out + begin);

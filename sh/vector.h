@@ -5,7 +5,7 @@
 
 namespace lobe {
 
-using Vec3 = Eigen::Vector3f;   ///< point (metres) or direction (unit), single precision
+using Vec3 = Eigen::Vector3f;  ///< point (metres) or direction (unit), single precision
 using Vec3d = Eigen::Vector3d;
 
 }  // namespace lobe

@@ -12,9 +12,7 @@ void ZernikeRadial(int m, int n_max, double rho, double* out) {
   if (n_max < m) return;
   const double x = 2.0 * rho * rho - 1.0;
   const double rho_m = std::pow(rho, m);
-  const auto scale = [m](int n) {
-    return std::sqrt((m == 0 ? 1.0 : 2.0) * (n + 1) / std::numbers::pi);
-  };
+  const auto scale = [m](int n) { return std::sqrt((m == 0 ? 1.0 : 2.0) * (n + 1) / std::numbers::pi); };
   double before = 0, p = 1;
   out[0] = scale(m) * rho_m;
   for (int j = 0; m + 2 * (j + 1) <= n_max; ++j) {
@@ -47,14 +45,14 @@ ZernikeTransform::ZernikeTransform(int l_max) : l_max_(l_max), to_h_(l_max + 1),
   Eigen::VectorXd h(basis.size()), radial(l_max / 2 + 1);
   for (size_t i = 0; i < rule.nodes.size(); ++i) {
     const double z = rule.nodes[i], rho = std::sqrt(1.0 - z * z);
-    basis.Evaluate(rho, 0.0, z, h.data());   // azimuth 0: the cosine terms alone
+    basis.Evaluate(rho, 0.0, z, h.data());  // azimuth 0: the cosine terms alone
     for (int m = 0; m <= l_max; ++m) {
       ZernikeRadial(m, l_max, rho, radial.data());
       const int size = (l_max - m) / 2 + 1;
       const double w = rule.weights[i] * (m == 0 ? 2.0 : 1.0) * std::numbers::pi;
       for (int l = 0; l < size; ++l) {
         const double hl = w * h[CoefficientIndex(m + 2 * l, m)];
-        for (int n = 0; n <= l; ++n) {        // what lies past the diagonal is zero by degree
+        for (int n = 0; n <= l; ++n) {  // what lies past the diagonal is zero by degree
           to_z_[m](n, l) += hl * radial[n] * z;
         }
         for (int n = l; n < size; ++n) to_h_[m](l, n) += hl * radial[n];

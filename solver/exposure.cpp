@@ -104,7 +104,8 @@ std::vector<Emitter> FindEmitters(const Scene& scene) {
     const Vec3 n = scene.GeometricNormal(scene.faces[f]);
     const float area = scene.Area(scene.faces[f]);
     out.push_back({f, Side::kFront, p, n, area, material.emission});
-    if (material.double_sided) out.push_back({f, Side::kBack, {p[0], p[2], p[1]}, -n, area, material.emission});
+    if (material.double_sided)
+      out.push_back({f, Side::kBack, {p[0], p[2], p[1]}, -n, area, material.emission});
   }
   return out;
 }
@@ -112,16 +113,17 @@ std::vector<Emitter> FindEmitters(const Scene& scene) {
 std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed) {
   const auto emitters = FindEmitters(scene);
   if (emitters.empty()) {
-    throw InputError(scene.path + ": no emitter found: at least one material with an emissiveFactor above 0 "
+    throw InputError(scene.path +
+                     ": no emitter found: at least one material with an emissiveFactor above 0 "
                      "on a triangle is expected");
   }
   const auto piece = ConnectedPieces(scene);
   const EmitterChoice choice(emitters);
-  std::vector<bool> lit_piece(2 * scene.faces.size(), false);   // 2 * piece + side
+  std::vector<bool> lit_piece(2 * scene.faces.size(), false);  // 2 * piece + side
   for (const auto& e : emitters) lit_piece[2 * piece[e.face] + size_t(e.side)] = true;
 
   const auto double_sided = [&](uint32_t f) { return scene.material(scene.faces[f]).double_sided; };
-  std::vector<LitPoint> points;   // of the last round
+  std::vector<LitPoint> points;  // of the last round
   for (int round = 0; round < kMaxRounds; ++round) {
     // Each walk lists the sides it met; merged afterwards, so that threads share nothing.
     std::vector<std::vector<LitPoint>> met(kWalksPerRound);
@@ -154,7 +156,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
   }
 
   // A small thing in a large scene is seldom met by chance, and would stay black.
-  std::map<uint32_t, std::vector<uint32_t>> unmet;   // faces by 2 * piece + side
+  std::map<uint32_t, std::vector<uint32_t>> unmet;  // faces by 2 * piece + side
   for (uint32_t f = 0; f < scene.faces.size(); ++f) {
     for (uint32_t side = 0; side < (double_sided(f) ? 2u : 1u); ++side) {
       if (!lit_piece[2 * piece[f] + side]) unmet[2 * piece[f] + side].push_back(f);
@@ -179,7 +181,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
 }
 
 Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tracer, uint64_t seed) {
-  constexpr int kSide = 8;   // strata a side
+  constexpr int kSide = 8;  // strata a side
   static_assert(kSide * kSide == Exposure::kProbes);
   Exposure out;
   const size_t nodes = mesh.node_count();
@@ -195,8 +197,8 @@ Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tra
     Ray rays[Exposure::kProbes];
     RayHit hits[Exposure::kProbes];
     for (int i = 0; i < Exposure::kProbes; ++i) {
-      const Vec3 w = frame.ToWorld(CosineDirection((i / kSide + random.Next()) / kSide,
-                                                   (i % kSide + random.Next()) / kSide));
+      const Vec3 w = frame.ToWorld(
+          CosineDirection((i / kSide + random.Next()) / kSide, (i % kSide + random.Next()) / kSide));
       rays[i] = RayFrom(mesh.node_sample_position[node], frame.z, w, tracer.epsilon());
     }
     tracer.Intersect(rays, hits, /*coherent=*/false);
@@ -217,7 +219,7 @@ Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tra
   const auto emitters = FindEmitters(scene);
   const EmitterChoice choice(emitters);
   constexpr int kEmissionProbes = 1 << 14;
-  std::vector<uint8_t> fate(kEmissionProbes);   // 1 escaped, 2 blocked
+  std::vector<uint8_t> fate(kEmissionProbes);  // 1 escaped, 2 blocked
   std::vector<size_t> source(kEmissionProbes);
   tbb::parallel_for(0, kEmissionProbes, [&](int i) {
     RandomStream random(Mix(Mix(seed, 0xe317), i));

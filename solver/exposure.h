@@ -26,9 +26,9 @@ struct Exposure {
   /// Rays whose light reaches no node. Ledger only.
   struct LostRay {
     Vec3 direction_local;
-    bool escaped;   ///< left the scene; else blocked
+    bool escaped;  ///< left the scene; else blocked
   };
-  std::vector<uint32_t> lost_begin;   ///< per node, into `lost`; one more at the end
+  std::vector<uint32_t> lost_begin;  ///< per node, into `lost`; one more at the end
   std::vector<LostRay> lost;
 
   /// The same for emission, as fractions of each channel's emitted power.
@@ -41,8 +41,8 @@ Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tra
 struct Emitter {
   uint32_t face;
   Side side;
-  std::array<Vec3, 3> corners;   ///< counter-clockwise seen from the emitting side
-  Vec3 normal;                   ///< on that side
+  std::array<Vec3, 3> corners;  ///< counter-clockwise seen from the emitting side
+  Vec3 normal;                  ///< on that side
   float area;
   Rgb radiance;
 };

@@ -57,7 +57,8 @@ TriangleLight FarTriangleLight(const Vec3& point, const Vec3& normal, const std:
   return {cos_i * cos_o_area / (r2 * r2), to / std::sqrt(r2)};
 }
 
-TriangleLight EstimateTriangleLight(const Vec3& point, const Vec3& normal, const std::array<Vec3, 3>& corners) {
+TriangleLight EstimateTriangleLight(const Vec3& point, const Vec3& normal,
+                                    const std::array<Vec3, 3>& corners) {
   const Vec3 to = (corners[0] + corners[1] + corners[2]) * (1.0f / 3.0f) - point;
   const bool above = (corners[0] - point).dot(normal) > 0 && (corners[1] - point).dot(normal) > 0 &&
                      (corners[2] - point).dot(normal) > 0;

@@ -28,7 +28,8 @@ NodeLobes::NodeLobes(const Mesh& mesh, const std::vector<PartDegrees>& patch_deg
     for (const int l_max : {degrees.base, degrees.gloss}) {
       if (l_max < 0 || !zonal_flux_[l_max].empty()) continue;
       const Eigen::VectorXd weights = FluxWeights(l_max);
-      for (int l = 0; l <= l_max; l += 2) zonal_flux_[l_max].push_back(float(weights[CoefficientIndex(l, 0)]));
+      for (int l = 0; l <= l_max; l += 2)
+        zonal_flux_[l_max].push_back(float(weights[CoefficientIndex(l, 0)]));
     }
     const int l_max = degrees.max_degree();
     if (l_max >= 0 && !bases_[l_max]) bases_[l_max] = std::make_shared<HemisphereBasis<float>>(l_max);

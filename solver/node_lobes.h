@@ -17,7 +17,7 @@ struct PartDegrees {
   int base = 0, gloss = -1;
   int base_count() const { return base < 0 ? 0 : (base + 1) * (base + 2) / 2; }
   int gloss_count() const { return gloss < 0 ? 0 : (gloss + 1) * (gloss + 2) / 2; }
-  int count() const { return base_count() + gloss_count(); }   ///< coefficients per channel
+  int count() const { return base_count() + gloss_count(); }  ///< coefficients per channel
   int max_degree() const { return base > gloss ? base : gloss; }
   bool diffuse() const { return base <= 0 && gloss < 0; }
   bool operator==(const PartDegrees&) const = default;
@@ -39,7 +39,7 @@ class NodeLobes {
   const float* gloss(uint32_t node) const { return base(node) + 3 * degrees(node).base_count(); }
   std::span<float> all(uint32_t node) { return {base(node), size_t(3) * degrees(node).count()}; }
   std::span<const float> all(uint32_t node) const { return {base(node), size_t(3) * degrees(node).count()}; }
-  std::span<const float> patch_values(uint32_t patch) const;   ///< node after node
+  std::span<const float> patch_values(uint32_t patch) const;  ///< node after node
   std::span<float> patch_values(uint32_t patch);
 
   size_t node_count() const { return node_patch_.size(); }

@@ -23,8 +23,8 @@ struct SolveOptions {
   /// A step shoots nodes in order of unshot power until this fraction of it is covered, in (0, 1].
   /// Measured in docs/validation.md#step-fraction.
   double step_fraction = 1.0;
-  int max_steps = 1000;            ///< stop after so many steps of reflected light
-  double max_seconds = 0;          ///< stop after so long; 0: no limit
+  int max_steps = 1000;    ///< stop after so many steps of reflected light
+  double max_seconds = 0;  ///< stop after so long; 0: no limit
   uint64_t seed = 1;
 
   /// A sentence saying what is out of range, or an empty string.

@@ -36,13 +36,13 @@ constexpr int kCandidates = 8;
 struct StandInPoint {
   Vec3 barycentrics, position;
 };
-StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, const Vec3& point, const Vec3& normal,
-                     RandomStream& random) {
+StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, const Vec3& point,
+                     const Vec3& normal, RandomStream& random) {
   // Seen small and well above both horizons the kernel is as good as constant: any point will do.
   const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f) - point;
   const float distance = middle.norm();
-  const bool even = LongestEdgeSquared(p) < 0.0625f * distance * distance && middle.dot(normal) > 0.3f * distance &&
-                    -middle.dot(cell_normal) > 0.3f * distance;
+  const bool even = LongestEdgeSquared(p) < 0.0625f * distance * distance &&
+                    middle.dot(normal) > 0.3f * distance && -middle.dot(cell_normal) > 0.3f * distance;
   const int candidates = even ? 1 : kCandidates;
   // Candidates follow the plastic-number sequence (Roberts 2018), shifted at random: stratified.
   const float u0 = random.Next(), v0 = random.Next();
@@ -80,7 +80,8 @@ StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, cons
   }
   chosen.barycentrics = Vec3::Constant(0.005f);
   chosen.barycentrics[highest] = 0.99f;
-  chosen.position = p[0] * chosen.barycentrics[0] + p[1] * chosen.barycentrics[1] + p[2] * chosen.barycentrics[2];
+  chosen.position =
+      p[0] * chosen.barycentrics[0] + p[1] * chosen.barycentrics[1] + p[2] * chosen.barycentrics[2];
   return chosen;
 }
 
@@ -128,7 +129,8 @@ ShootingField::ShootingField(const Scene& scene, const Mesh& mesh, const std::ve
   }
 }
 
-Rgb ShootingField::Radiance(uint32_t element, const float weight[3], const Vec3& wo_world, float* basis) const {
+Rgb ShootingField::Radiance(uint32_t element, const float weight[3], const Vec3& wo_world,
+                            float* basis) const {
   Mesh::Location where{element, {weight[0], weight[1], weight[2]}};
   const NodeWeights w = Interpolate(*mesh_, *hidden_, where);
   Rgb out = Rgb::Zero();
@@ -156,7 +158,8 @@ void Receiver::Split(const ShootingField& field, const ShootingField::Root& root
   } else {
     // Below an element, and in an emitter: the longest edge.
     const auto& p = parent.corners;
-    const float e[3] = {(p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm(), (p[1] - p[0]).squaredNorm()};
+    const float e[3] = {(p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm(),
+                        (p[1] - p[0]).squaredNorm()};
     apex = int(std::max_element(e, e + 3) - e);
   }
   const auto corners = Bisect(parent.corners, apex);
@@ -177,14 +180,14 @@ void Receiver::Split(const ShootingField& field, const ShootingField::Root& root
   }
 }
 
-void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node, const Cell& cell,
-                    float weight, RandomStream& random, Received& work) {
+void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node,
+                    const Cell& cell, float weight, RandomStream& random, Received& work) {
   const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
   const TriangleLight light = LightOfTriangle(point, normal, cell.corners);
   if (!(light.irradiance > 0)) return;
   const auto [b, target] = StandIn(cell.corners, root.normal, point, normal, random);
-  // The element at the point counts, not the cell's mean: what is dark is often also what is out of sight (the
-  // floor under a box), and mean radiance times visible part would count that twice.
+  // The element at the point counts, not the cell's mean: what is dark is often also what is out of sight
+  // (the floor under a box), and mean radiance times visible part would count that twice.
   uint32_t element = cell.element;
   Rgb radiance = cell.radiance;
   Vec3 weights = cell.weights[0] * b[0] + cell.weights[1] * b[1] + cell.weights[2] * b[2];
@@ -193,7 +196,8 @@ void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root,
     if (mesh_.cells[at].child != kNone) weights = b;
     while (mesh_.cells[at].child != kNone) {
       const auto& tree = mesh_.cells[at];
-      const float w0 = weights[tree.apex], w1 = weights[(tree.apex + 1) % 3], w2 = weights[(tree.apex + 2) % 3];
+      const float w0 = weights[tree.apex], w1 = weights[(tree.apex + 1) % 3],
+                  w2 = weights[(tree.apex + 2) % 3];
       const bool first = w1 >= w2;
       weights = first ? Vec3(w0, w1 - w2, 2 * w2) : Vec3(w0, 2 * w1, w2 - w1);
       at = tree.child + (first ? 0 : 1);
@@ -212,12 +216,12 @@ void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root,
   deltas_.push_back({light.direction, radiance * (light.irradiance * weight)});
 }
 
-void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
-                   Received& work) {
+void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float received_before,
+                   uint64_t seed, Received& work) {
   const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
   const MaterialLobes& material = materials_[mesh_.patches[mesh_.node_patch[node]].material];
-  const float max_angle =
-      material.diffuse() ? std::numeric_limits<float>::infinity() : kGlossyAngle / float(std::max(2, material.max_degree()));
+  const float max_angle = material.diffuse() ? std::numeric_limits<float>::infinity()
+                                             : kGlossyAngle / float(std::max(2, material.max_degree()));
   RandomStream random(Mix(seed, node));
 
   const auto& roots = field.roots();
@@ -241,15 +245,21 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   for (size_t i = 0; i < roots.size(); ++i) {
     if (!(expected_[i] > 0)) continue;
     const auto& root = roots[i];
-    stack_.push_back({root.corners, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, root.radiance, expected_[i],
-                      root.cell, root.cell == kNone ? kNone : mesh_.cells[root.cell].element, 0});
+    stack_.push_back({root.corners,
+                      {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()},
+                      root.radiance,
+                      expected_[i],
+                      root.cell,
+                      root.cell == kNone ? kNone : mesh_.cells[root.cell].element,
+                      0});
     while (!stack_.empty()) {
       const Cell cell = stack_.back();
       stack_.pop_back();
       bool split = cell.expected > threshold;
       if (!split && cell.expected > portion && std::isfinite(max_angle)) {
         const auto& p = cell.corners;
-        split = LongestEdgeSquared(p) > max_angle * max_angle * ((p[0] + p[1] + p[2]) / 3.0f - point).squaredNorm();
+        split = LongestEdgeSquared(p) >
+                max_angle * max_angle * ((p[0] + p[1] + p[2]) / 3.0f - point).squaredNorm();
       }
       if (split && cell.depth < kMaxDepth) {
         Split(field, root, point, normal, cell);

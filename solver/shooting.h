@@ -25,14 +25,15 @@ class ShootingField {
   ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters);
   /// Light reflected by nodes: `lobes` with zeros where a node does not shoot. `planar` patches share one
   /// basis evaluation. References to `mesh`, `hidden` and `lobes` are kept.
-  ShootingField(const Scene& scene, const Mesh& mesh, const std::vector<uint8_t>& hidden, const NodeLobes& lobes);
+  ShootingField(const Scene& scene, const Mesh& mesh, const std::vector<uint8_t>& hidden,
+                const NodeLobes& lobes);
 
   struct Root {
     std::array<Vec3, 3> corners;
     Vec3 normal;
-    Rgb radiance;          ///< mean over the cell
-    uint32_t cell;         ///< kNone for an emitter
-    bool glossy;           ///< radiance depends on direction: read lobes
+    Rgb radiance;   ///< mean over the cell
+    uint32_t cell;  ///< kNone for an emitter
+    bool glossy;    ///< radiance depends on direction: read lobes
   };
   const std::vector<Root>& roots() const { return roots_; }
   const Rgb& cell_radiance(uint32_t cell) const { return cell_radiance_[cell]; }
@@ -52,9 +53,9 @@ class ShootingField {
 /// What a receiver got of one step, for the ledger (W m^-2) and for counting work.
 struct Received {
   Rgb delivered = Rgb::Zero(), absorbed = Rgb::Zero(), mirrored = Rgb::Zero();
-  Rgb reflected = Rgb::Zero();                ///< by albedo, angle by angle; the lobes' flux should equal it
+  Rgb reflected = Rgb::Zero();  ///< by albedo, angle by angle; the lobes' flux should equal it
   uint64_t rays = 0;
-  uint64_t lobe_reads = 0, lobe_writes = 0;   ///< directional evaluations and accumulations
+  uint64_t lobe_reads = 0, lobe_writes = 0;  ///< directional evaluations and accumulations
   double seconds_cutting = 0, seconds_rays = 0, seconds_accumulating = 0;
 };
 
@@ -64,13 +65,13 @@ class Receiver {
  public:
   Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials);
 
-  /// Cuts `field` into about `samples` delta areas, more where more light is expected to come from, traces one
-  /// shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes, zeroed by
-  /// the caller). `received_before`: sum over channels of the irradiance so far; cells that bring less
-  /// than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
+  /// Cuts `field` into about `samples` delta areas, more where more light is expected to come from, traces
+  /// one shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes,
+  /// zeroed by the caller). `received_before`: sum over channels of the irradiance so far; cells that bring
+  /// less than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
   /// `seed` decides which point of a cell stands for it. `timed`: fill the seconds.
-  Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
-                  float* out, bool timed);
+  Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
+                  uint64_t seed, float* out, bool timed);
 
   /// The shadow rays of the last Gather, for measuring what tracing them alone costs (bench/).
   std::span<const Ray> last_rays() const { return rays_; }
@@ -79,9 +80,9 @@ class Receiver {
   // A piece of a root, as large as the receiver allows.
   struct Cell {
     std::array<Vec3, 3> corners;
-    std::array<Vec3, 3> weights;   // of the element's nodes at the corners; at and below a leaf only
+    std::array<Vec3, 3> weights;  // of the element's nodes at the corners; at and below a leaf only
     Rgb radiance;
-    float expected;                // irradiance it would bring if free, summed over channels; an estimate
+    float expected;  // irradiance it would bring if free, summed over channels; an estimate
     uint32_t cell, element;
     int depth;
   };
@@ -92,8 +93,8 @@ class Receiver {
   };
   void Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
            Received& work);
-  void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point, const Vec3& normal,
-             const Cell& parent);
+  void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
+             const Vec3& normal, const Cell& parent);
   void Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node, const Cell& cell,
             float weight, RandomStream& random, Received& work);
 
@@ -105,7 +106,7 @@ class Receiver {
   std::vector<Ray> rays_;
   std::vector<uint8_t> occluded_;
   std::vector<float> basis_;
-  std::vector<float> expected_;   // per root
+  std::vector<float> expected_;  // per root
   IncidentMoments moments_;
 };
 

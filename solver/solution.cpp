@@ -4,11 +4,16 @@ namespace lobe {
 
 const char* Name(StopReason reason) {
   switch (reason) {
-    case StopReason::kConverged: return "converged";
-    case StopReason::kStepLimit: return "step limit";
-    case StopReason::kTimeLimit: return "time limit";
-    case StopReason::kInterrupted: return "interrupted";
-    case StopReason::kNotConverging: return "not converging";
+    case StopReason::kConverged:
+      return "converged";
+    case StopReason::kStepLimit:
+      return "step limit";
+    case StopReason::kTimeLimit:
+      return "time limit";
+    case StopReason::kInterrupted:
+      return "interrupted";
+    case StopReason::kNotConverging:
+      return "not converging";
   }
   return "";
 }

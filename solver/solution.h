@@ -21,12 +21,12 @@ struct Solution {
   Scene scene;
   Mesh mesh;
   SolveOptions options;
-  std::vector<GlossKind> material_kinds;     ///< per scene.materials
-  std::vector<double> material_errors;       ///< flux-weighted error of the gloss lobes
-  std::vector<uint8_t> hidden;               ///< per node: inside something, weight 0 in interpolation
-  NodeLobes total;                           ///< reflected radiance, all bounces shot so far included
-  NodeLobes direct;                          ///< of it, straight from emitters; indirect = total - direct
-  NodeLobes unshot;                          ///< of it, not yet passed on
+  std::vector<GlossKind> material_kinds;  ///< per scene.materials
+  std::vector<double> material_errors;    ///< flux-weighted error of the gloss lobes
+  std::vector<uint8_t> hidden;            ///< per node: inside something, weight 0 in interpolation
+  NodeLobes total;                        ///< reflected radiance, all bounces shot so far included
+  NodeLobes direct;                       ///< of it, straight from emitters; indirect = total - direct
+  NodeLobes unshot;                       ///< of it, not yet passed on
   Ledger ledger;
   std::vector<StepRecord> history;
   StopReason stop_reason = StopReason::kConverged;
@@ -38,7 +38,7 @@ struct Solution {
 /// Nodes and weights that carry the light at a point of an element: hat functions, hidden nodes left out
 /// and the rest renormalised. Shooting, rendering and inspection all interpolate through here.
 struct NodeWeights {
-  int count = 0;              ///< 0: all three are hidden
+  int count = 0;  ///< 0: all three are hidden
   uint32_t node[3];
   float weight[3];
 };

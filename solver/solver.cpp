@@ -123,7 +123,7 @@ class ProgressiveSolver {
     const ShootingField field(s_.scene, s_.mesh, s_.hidden, shooting);
     std::swap(s_.unshot, kept);
     if (!Step(step, field, s_.options.delta_areas, shooters)) {
-      std::swap(s_.unshot, kept);   // as if the step had not begun
+      std::swap(s_.unshot, kept);  // as if the step had not begun
       return false;
     }
     AccountSent(shooting);
@@ -176,7 +176,8 @@ class ProgressiveSolver {
       const double area = area_[n];
       rays_ += r.rays;
       received_[n] += r.delivered.sum();
-      const Eigen::Array3d flux = s_.hidden[n] ? Eigen::Array3d::Zero() : Eigen::Array3d(gained_.Flux(n).cast<double>());
+      const Eigen::Array3d flux =
+          s_.hidden[n] ? Eigen::Array3d::Zero() : Eigen::Array3d(gained_.Flux(n).cast<double>());
       ledger.delivered += r.delivered.cast<double>() * area;
       ledger.absorbed += r.absorbed.cast<double>() * area;
       ledger.mirrored += r.mirrored.cast<double>() * area;
@@ -252,7 +253,7 @@ class ProgressiveSolver {
   std::vector<Emitter> emitters_;
   std::vector<MaterialLobes> materials_;
   std::vector<double> area_;
-  std::vector<float> received_;   // per node: irradiance so far, summed over channels
+  std::vector<float> received_;  // per node: irradiance so far, summed over channels
   NodeLobes gained_;
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
   uint64_t rays_ = 0;

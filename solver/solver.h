@@ -8,9 +8,9 @@
 namespace lobe {
 
 struct Progress {
-  int step;                    ///< 0: emission
-  double fraction_of_step;     ///< 0..1
-  double residual;             ///< unshot over emitted power
+  int step;                 ///< 0: emission
+  double fraction_of_step;  ///< 0..1
+  double residual;          ///< unshot over emitted power
   double seconds;
   uint64_t rays;
   size_t nodes;

@@ -9,7 +9,8 @@ namespace {
 
 TEST(FrameTest, IsRightHandedAndOrthonormalForEveryNormal) {
   for (int i = 0; i < 500; ++i) {
-    const float z = 1.0f - 2.0f * float(i) / 499.0f, phi = 2.4f * float(i), s = std::sqrt(std::max(0.0f, 1 - z * z));
+    const float z = 1.0f - 2.0f * float(i) / 499.0f, phi = 2.4f * float(i),
+                s = std::sqrt(std::max(0.0f, 1 - z * z));
     const Frame f(Vec3(s * std::cos(phi), s * std::sin(phi), z).normalized());
     EXPECT_NEAR(f.x.norm(), 1, 2e-6);
     EXPECT_NEAR(f.y.norm(), 1, 2e-6);

@@ -36,7 +36,8 @@ std::vector<Model> AllModels() {
   std::vector<Model> out;
   for (const double roughness : {0.05, 0.1, 0.2, 0.3, 0.5, 1.0}) out.push_back(Ggx(roughness));
   for (const float n : {5.0f, 20.0f, 200.0f}) {
-    out.push_back(FromReflectance("phong " + std::to_string(n), Phong{Rgb::Constant(1), n}, 1 / std::sqrt(n + 1.0)));
+    out.push_back(
+        FromReflectance("phong " + std::to_string(n), Phong{Rgb::Constant(1), n}, 1 / std::sqrt(n + 1.0)));
   }
   for (const float a : {0.1f, 0.4f}) {
     out.push_back(FromReflectance("ward " + std::to_string(a), Ward{Rgb::Constant(1), a}, a));
@@ -99,8 +100,9 @@ TEST(LobeTableTest, CombineIsLinear) {
   const Model a = Ggx(0.5), b = Ggx(0.7);
   const auto ta = ScalarTable::Build(a.f, 6, HalfVectorRule{.width = a.width}, 24);
   const auto tb = ScalarTable::Build(b.f, 6, HalfVectorRule{.width = b.width}, 24);
-  const auto sum = ScalarTable::Build([&](const Vec3d& wi, const Vec3d& wo) { return 0.3 * a.f(wi, wo) + 2 * b.f(wi, wo); },
-                                      6, HalfVectorRule{.width = 0.25}, 24);
+  const auto sum = ScalarTable::Build(
+      [&](const Vec3d& wi, const Vec3d& wo) { return 0.3 * a.f(wi, wo) + 2 * b.f(wi, wo); }, 6,
+      HalfVectorRule{.width = 0.25}, 24);
   EXPECT_LT((ScalarTable::Combine(0.3, ta, 2, tb).zernike - sum.zernike).cwiseAbs().maxCoeff(), 1e-6);
 }
 

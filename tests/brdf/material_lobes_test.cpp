@@ -76,7 +76,7 @@ TEST(MaterialLobesTest, TakesTheSmallestDegreeWithinTheTolerance) {
   TableCache cache;
   for (const double tolerance : {0.5, 0.2, 0.05}) {
     LobeOptions options{.l_max = 24, .error = tolerance};
-    const MaterialLobes m(White(0.5f), options, cache);   // F = 1, on which the degree is chosen
+    const MaterialLobes m(White(0.5f), options, cache);  // F = 1, on which the degree is chosen
     EXPECT_LE(m.gloss.error, tolerance);
     options.force_l_max = m.gloss.l_max - 1;
     EXPECT_GT(MaterialLobes(White(0.5f), options, cache).gloss.error, tolerance);
@@ -120,8 +120,9 @@ TEST(MaterialLobesTest, StatesTheErrorOfTheMaterialNotOfItsTable) {
 TEST(MaterialLobesTest, FluxOfAReflectedLobeIsTheAlbedoAtEveryAngle) {
   TableCache cache;
   const std::vector<std::pair<Reflectance, double>> models = {
-      {Gltf(0.9f, 1, 0.05f), 0.0025}, {Gltf(0.9f, 1, 0.2f), 0.04}, {Gltf(0.6f, 0, 0.3f), 0.09},
-      {Gltf(0.6f, 0, 1.0f), 1.0},     {Phong{Rgb::Constant(0.8f), 20}, 0.2}, {Ward{Rgb::Constant(0.8f), 0.2f}, 0.2}};
+      {Gltf(0.9f, 1, 0.05f), 0.0025},        {Gltf(0.9f, 1, 0.2f), 0.04},
+      {Gltf(0.6f, 0, 0.3f), 0.09},           {Gltf(0.6f, 0, 1.0f), 1.0},
+      {Phong{Rgb::Constant(0.8f), 20}, 0.2}, {Ward{Rgb::Constant(0.8f), 0.2f}, 0.2}};
   for (const auto& [reflectance, width] : models) {
     for (const int l_max : {0, 5, 12, 24}) {
       LobeOptions options;
@@ -135,10 +136,12 @@ TEST(MaterialLobesTest, FluxOfAReflectedLobeIsTheAlbedoAtEveryAngle) {
         if (gloss.rows() > 0) flux += LobeFlux(gloss.cast<double>())(1);
         // The gloss in half-vector coordinates of its own width, the smooth base in wide ones.
         const double exact =
-            test::SlowAlbedo([&](const Vec3d& a, const Vec3d& b) { return double(EvaluateGloss(reflectance, a, b)[1]); },
-                             wi.z(), width, 400, 200) +
-            test::SlowAlbedo([&](const Vec3d& a, const Vec3d& b) { return double(EvaluateBase(reflectance, a, b)[1]); },
-                             wi.z(), 1.0, 400, 200);
+            test::SlowAlbedo(
+                [&](const Vec3d& a, const Vec3d& b) { return double(EvaluateGloss(reflectance, a, b)[1]); },
+                wi.z(), width, 400, 200) +
+            test::SlowAlbedo(
+                [&](const Vec3d& a, const Vec3d& b) { return double(EvaluateBase(reflectance, a, b)[1]); },
+                wi.z(), 1.0, 400, 200);
         EXPECT_NEAR(flux, exact, 1e-3) << Describe(reflectance) << " l_max " << l_max << " at " << degrees;
         EXPECT_NEAR(material.Albedo(wi.z())[1], exact, 1e-3);
       }
@@ -183,7 +186,8 @@ TEST(MaterialLobesTest, TurnsWithTheIncidentAzimuth) {
     basis.Evaluate(wo.x(), wo.y(), wo.z(), h.data());
     return Dot(gloss.col(0).data(), h.data(), int(gloss.rows()));
   };
-  for (const double turn : {0.4, 1.9, -2.7}) EXPECT_NEAR(value(0.3 + turn, 2.5 + turn), value(0.3, 2.5), 1e-4);
+  for (const double turn : {0.4, 1.9, -2.7})
+    EXPECT_NEAR(value(0.3 + turn, 2.5 + turn), value(0.3, 2.5), 1e-4);
 }
 
 TEST(MaterialLobesTest, MomentsAddUpLikeLight) {

@@ -67,7 +67,7 @@ TEST(RendererTest, ADielectricMirrorShowsItsBaseToo) {
 TEST(RendererTest, DepthOfMirrorsIsLimitedAndTheLossReported) {
   SceneBuilder b;
   const uint32_t mirror = b.AddMaterial("mirror", Mirror(1, Rgb::Constant(0.9f)));
-  b.AddQuad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, mirror);   // two mirrors face to face
+  b.AddQuad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, mirror);  // two mirrors face to face
   b.AddQuad({1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}, mirror);
   b.AddQuad({0, 2, 0}, {1, 2, 0}, {1, 2, 1}, {0, 2, 1}, b.AddEmitter(Rgb::Constant(1)));
   b.AddCamera("view", {0.5f, 0.5f, 0.5f}, {1, 0.5f, 0.5f}, Vec3::UnitY(), 0.1f);
@@ -83,10 +83,11 @@ TEST(RendererTest, DepthOfMirrorsIsLimitedAndTheLossReported) {
 
 TEST(RendererTest, ShowsEmittersBacksAndNothing) {
   SceneBuilder b;
-  b.AddQuad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, b.AddEmitter(Rgb(1, 2, 3)));   // faces +z
+  b.AddQuad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, b.AddEmitter(Rgb(1, 2, 3)));  // faces +z
   const Solution s = Solve(b.Build(), SolveOptions{});
   const Renderer renderer(s);
-  EXPECT_LT((renderer.Radiance(RayTo({0.5f, 0.5f, 1}, {0.5f, 0.5f, 0})) - Rgb(1, 2, 3)).abs().maxCoeff(), 1e-6);
+  EXPECT_LT((renderer.Radiance(RayTo({0.5f, 0.5f, 1}, {0.5f, 0.5f, 0})) - Rgb(1, 2, 3)).abs().maxCoeff(),
+            1e-6);
   EXPECT_EQ(renderer.Radiance(RayTo({0.5f, 0.5f, -1}, {0.5f, 0.5f, 0})).sum(), 0) << "a back is black";
   EXPECT_EQ(renderer.Radiance(RayTo({0.5f, 0.5f, 1}, {0.5f, 0.5f, 2})).sum(), 0) << "so is the void";
 }
@@ -109,10 +110,13 @@ TEST(RendererTest, GivesTheSameBitsForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 7}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     tbb::task_arena arena(threads);
-    arena.execute([&] { images.push_back(Renderer(s).Render(CameraView(s.scene.cameras[0], 50, 30), o, nullptr)); });
+    arena.execute(
+        [&] { images.push_back(Renderer(s).Render(CameraView(s.scene.cameras[0], 50, 30), o, nullptr)); });
   }
   for (int i = 1; i < 3; ++i) {
-    EXPECT_EQ(std::memcmp(images[0].pixels.data(), images[i].pixels.data(), images[0].pixels.size() * sizeof(Rgb)), 0);
+    EXPECT_EQ(
+        std::memcmp(images[0].pixels.data(), images[i].pixels.data(), images[0].pixels.size() * sizeof(Rgb)),
+        0);
   }
 }
 
@@ -132,17 +136,18 @@ TEST(RendererTest, FiltersKeepAConstantPictureConstant) {
   }
 }
 
-// A bright half-plane ends between pixels 7 and 8. Pixel 8 is dark for the box; the window's tail from half a pixel
-// on, over its integral of 3 a0: (a0 - sqrt(3) / 2 (3 a1 / 2 pi + 3 a2 / 4 pi)) / 3 a0 = 0.1186.
+// A bright half-plane ends between pixels 7 and 8. Pixel 8 is dark for the box; the window's tail from half a
+// pixel on, over its integral of 3 a0: (a0 - sqrt(3) / 2 (3 a1 / 2 pi + 3 a2 / 4 pi)) / 3 a0 = 0.1186.
 TEST(RendererTest, FiltersReachAsFarAsTheySay) {
   SceneBuilder b;
-  b.AddQuad({-3, -3, 0}, {0, -3, 0}, {0, 3, 0}, {-3, 3, 0}, b.AddEmitter(Rgb::Constant(1)));   // faces +z
+  b.AddQuad({-3, -3, 0}, {0, -3, 0}, {0, 3, 0}, {-3, 3, 0}, b.AddEmitter(Rgb::Constant(1)));  // faces +z
   b.AddCamera("view", {0, 0, 5}, {0, 0, 0});
   const Solution s = Solve(b.Build(), SolveOptions{});
   RenderOptions o;
   o.width = o.height = 16;
   o.samples_per_pixel = 1024;
-  for (const auto& [filter, tail] : {std::pair{PixelFilter::kBox, 0.0}, {PixelFilter::kBlackmanHarris, 0.1186}}) {
+  for (const auto& [filter, tail] :
+       {std::pair{PixelFilter::kBox, 0.0}, {PixelFilter::kBlackmanHarris, 0.1186}}) {
     o.filter = filter;
     const Image image = Renderer(s).Render(CameraView(s.scene.cameras[0], 16, 16), o, nullptr);
     // One of 32 strata holds the edge, in 32 rows: standard deviation 0.5 / 32 / sqrt(32) = 0.003.

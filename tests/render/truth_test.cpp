@@ -10,8 +10,8 @@
 namespace lobe {
 namespace {
 
-// Pictures against pairs of references by an independent path tracer (tests/truth). Bounds are what first light
-// promises at a longest edge of 0.4 m; docs/validation.md#cornell has the figures reached.
+// Pictures against pairs of references by an independent path tracer (tests/truth). Bounds are what first
+// light promises at a longest edge of 0.4 m; docs/validation.md#cornell has the figures reached.
 double WorstPixelError(const std::string& name, float edge) {
   const std::string folder = LOBE_TEST_DATA;
   SolveOptions options;
@@ -26,13 +26,15 @@ double WorstPixelError(const std::string& name, float edge) {
 }
 
 TEST(TruthTest, DiffuseCornellBoxIsWithinThreePercentAndBetterWhenFiner) {
-  const double coarse = WorstPixelError("cornell_diffuse", 0.8f), fine = WorstPixelError("cornell_diffuse", 0.4f);
+  const double coarse = WorstPixelError("cornell_diffuse", 0.8f),
+               fine = WorstPixelError("cornell_diffuse", 0.4f);
   EXPECT_LT(fine, 0.03);
   EXPECT_LT(fine, coarse);
 }
 
 TEST(TruthTest, GlossyCornellBoxIsWithinSixPercentAndBetterWhenFiner) {
-  const double coarse = WorstPixelError("cornell_glossy", 0.8f), fine = WorstPixelError("cornell_glossy", 0.4f);
+  const double coarse = WorstPixelError("cornell_glossy", 0.8f),
+               fine = WorstPixelError("cornell_glossy", 0.4f);
   EXPECT_LT(fine, 0.06);
   EXPECT_LT(fine, coarse);
 }

@@ -88,7 +88,7 @@ TEST(GlbWriterTest, GltfKeepsItsDataInABinBesideIt) {
 TEST(GlbWriterTest, NeverReplacesABinaryThatBelongsToAnotherFile) {
   const ScratchFolder folder;
   Sample().Write(folder.File("a.gltf"));
-  Sample().Write(folder.File("a.gltf"));   // its own may be replaced
+  Sample().Write(folder.File("a.gltf"));  // its own may be replaced
   std::filesystem::rename(folder.File("a.gltf"), folder.File("other.gltf"));
   const std::string before = ReadWholeFile(folder.File("a.bin"));
   ExpectInputError([&] { Sample().Write(folder.File("a.gltf")); }, {"a.bin", "does not belong to", "a.gltf"});

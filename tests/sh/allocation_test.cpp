@@ -28,7 +28,8 @@ namespace {
 TEST(AllocationTest, EvaluatingTheBasisOrALobeNeverAllocates) {
   const HemisphereBasis<float> single(64);
   const HemisphereBasis<double> exact(1000);
-  std::vector<float> a(single.size()), batch(size_t(20) * single.size()), x(20, 0.6f), y(20, 0.0f), z(20, 0.8f);
+  std::vector<float> a(single.size()), batch(size_t(20) * single.size()), x(20, 0.6f), y(20, 0.0f),
+      z(20, 0.8f);
   std::vector<double> b(exact.size());
   const size_t before = allocations;
   single.Evaluate(0.6f, 0.0f, 0.8f, a.data());

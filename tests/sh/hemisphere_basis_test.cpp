@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include <boost/math/special_functions/spherical_harmonic.hpp>
 #include <gtest/gtest.h>
+#include <boost/math/special_functions/spherical_harmonic.hpp>
 
 #include "sh/quadrature.h"
 
@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 // Real Y_lm without Condon-Shortley sign, from Boost's complex one: the second opinion.
 double SphericalHarmonic(int l, int m, double theta, double phi) {
-  const double sign = m % 2 == 0 ? 1.0 : -1.0;   // Boost's has the Condon-Shortley sign
+  const double sign = m % 2 == 0 ? 1.0 : -1.0;  // Boost's has the Condon-Shortley sign
   if (m == 0) return boost::math::spherical_harmonic_r(l, 0, theta, phi);
   if (m > 0) return sign * std::numbers::sqrt2 * boost::math::spherical_harmonic_r(l, m, theta, phi);
   return sign * std::numbers::sqrt2 * boost::math::spherical_harmonic_i(l, -m, theta, phi);
@@ -57,7 +57,8 @@ TEST(HemisphereBasisTest, AgreesWithBoostAtGenericDirections) {
     basis.Evaluate(w.x(), w.y(), w.z(), h.data());
     for (int l = 0; l <= 24; ++l) {
       for (int m = -l; m <= l; m += 2) {
-        EXPECT_NEAR(h[CoefficientIndex(l, m)], std::numbers::sqrt2 * SphericalHarmonic(l, m, theta, phi), 2e-12)
+        EXPECT_NEAR(h[CoefficientIndex(l, m)], std::numbers::sqrt2 * SphericalHarmonic(l, m, theta, phi),
+                    2e-12)
             << "l " << l << " m " << m;
       }
     }
@@ -110,7 +111,8 @@ TEST(HemisphereBasisTest, FloatFollowsDoubleUpToDegree64) {
   double worst = 0;
   for (int i = 0; i <= 200; ++i) {
     const double theta = 0.5 * std::numbers::pi * i / 200.0;
-    const float x = float(std::sin(theta) * 0.6), y = float(std::sin(theta) * 0.8), z = float(std::cos(theta));
+    const float x = float(std::sin(theta) * 0.6), y = float(std::sin(theta) * 0.8),
+                z = float(std::cos(theta));
     single.Evaluate(x, y, z, a.data());
     exact.Evaluate(x, y, z, b.data());
     for (int k = 0; k < single.size(); ++k) worst = std::max(worst, std::abs(double(a[k]) - b[k]));
@@ -121,7 +123,7 @@ TEST(HemisphereBasisTest, FloatFollowsDoubleUpToDegree64) {
 #ifdef __SSE2__
 TEST(HemisphereBasisTest, SurvivesFlushToZeroInFloatAtDegree64) {
   const unsigned before = _mm_getcsr();
-  _mm_setcsr(before | 0x8040);   // flush results and denormal operands
+  _mm_setcsr(before | 0x8040);  // flush results and denormal operands
   const HemisphereBasis<float> single(64);
   std::vector<float> a(single.size());
   single.Evaluate(std::sin(0.05f), 0.0f, std::cos(0.05f), a.data());

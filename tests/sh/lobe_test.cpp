@@ -88,7 +88,7 @@ TEST(ProjectionTest, IsTheLeastSquaresFitUnderTheCosine) {
     basis.Evaluate(w.x(), w.y(), w.z(), h.data());
     left += rule.weights[i] * w.z() * (Lobe(w) - h.dot(c)) * h;
   }
-  EXPECT_LT(left.cwiseAbs().maxCoeff(), 1e-9);   // Lobe is not a polynomial in (x, y): the rule's own error
+  EXPECT_LT(left.cwiseAbs().maxCoeff(), 1e-9);  // Lobe is not a polynomial in (x, y): the rule's own error
 }
 
 TEST(DegreeChangeTest, KeepsTheFlux) {
@@ -103,7 +103,8 @@ TEST(DegreeChangeTest, KeepsTheFlux) {
 TEST(DegreeChangeTest, EqualsProjectingToTheLowerDegree) {
   const VectorXd high = ProjectCosineWeighted(Lobe, 16, 40);
   for (const int l_max : {0, 3, 8}) {
-    EXPECT_LT((ChangeDegree(high, l_max) - ProjectCosineWeighted(Lobe, l_max, 40)).cwiseAbs().maxCoeff(), 1e-10);
+    EXPECT_LT((ChangeDegree(high, l_max) - ProjectCosineWeighted(Lobe, l_max, 40)).cwiseAbs().maxCoeff(),
+              1e-10);
   }
 }
 
@@ -116,7 +117,7 @@ TEST(DegreeChangeTest, DroppingCoefficientsWouldNotKeepTheFlux) {
 
 TEST(LobeTest, ConstantRadianceHasFluxPi) {
   VectorXd c = VectorXd::Zero(CoefficientCount(5));
-  c[0] = std::sqrt(2.0 * std::numbers::pi);   // radiance 1
+  c[0] = std::sqrt(2.0 * std::numbers::pi);  // radiance 1
   EXPECT_NEAR(LobeFlux(c)(0), std::numbers::pi, 1e-13);
 }
 

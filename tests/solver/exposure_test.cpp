@@ -49,7 +49,7 @@ TEST(ExposureTest, FindsASmallThingInALargeScene) {
 
 TEST(ExposureTest, NodesUnderABoxAreHiddenAndOthersAreNot) {
   for (const bool double_sided : {false, true}) {
-    for (const float y0 : {0.0f, -0.01f}) {   // standing, and sunk a centimetre
+    for (const float y0 : {0.0f, -0.01f}) {  // standing, and sunk a centimetre
       const Scene scene = RoomWithBox(double_sided, y0);
       const RayTracer tracer(scene);
       TessellateOptions options;

@@ -16,10 +16,13 @@ using Triangle = std::array<Vec3, 3>;
 // Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11: equal parallel squares, side 1,
 // distance 1; and C-14: unit squares at a right angle with a common edge.
 double ParallelUnitSquares() {
-  return 2 / kPi * (std::log(std::sqrt(4.0 / 3.0)) + 2 * std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) - 2 * std::atan(1.0));
+  return 2 / kPi *
+         (std::log(std::sqrt(4.0 / 3.0)) + 2 * std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) -
+          2 * std::atan(1.0));
 }
 double PerpendicularUnitSquares() {
-  return 1 / kPi * (2 * std::atan(1.0) - std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) + 0.25 * std::log(3.0 / 4.0));
+  return 1 / kPi *
+         (2 * std::atan(1.0) - std::sqrt(2.0) * std::atan(1 / std::sqrt(2.0)) + 0.25 * std::log(3.0 / 4.0));
 }
 
 // Mean over a unit square in the plane z = 0, normal up, of the irradiance from two triangles of radiance 1.
@@ -29,8 +32,9 @@ double MeanFormFactor(const Triangle& a, const Triangle& b) {
   for (int i = 0; i < 24; ++i) {
     for (int j = 0; j < 24; ++j) {
       const Vec3 x(float(rule.nodes[i]), float(rule.nodes[j]), 0);
-      sum += rule.weights[i] * rule.weights[j] *
-             (LightOfTriangle(x, Vec3::UnitZ(), a).irradiance + LightOfTriangle(x, Vec3::UnitZ(), b).irradiance);
+      sum +=
+          rule.weights[i] * rule.weights[j] *
+          (LightOfTriangle(x, Vec3::UnitZ(), a).irradiance + LightOfTriangle(x, Vec3::UnitZ(), b).irradiance);
     }
   }
   return sum / kPi;
@@ -58,7 +62,9 @@ TEST(FormFactorTest, IsClippedAtTheHorizon) {
   const Triangle whole = {Vec3(1, -1, -1), Vec3(1, -1, 1), Vec3(1, 1, 1)};
   const Triangle upper_a = {Vec3(1, -1, 0), Vec3(1, -1, 1), Vec3(1, 1, 1)};
   const Triangle upper_b = {Vec3(1, -1, 0), Vec3(1, 1, 1), Vec3(1, 0, 0)};
-  const auto at = [](const Triangle& t) { return ExactTriangleLight(Vec3::Zero(), Vec3::UnitZ(), t).irradiance; };
+  const auto at = [](const Triangle& t) {
+    return ExactTriangleLight(Vec3::Zero(), Vec3::UnitZ(), t).irradiance;
+  };
   EXPECT_GT(at(whole), 0);
   EXPECT_NEAR(at(whole), at(upper_a) + at(upper_b), 1e-6);
 }

@@ -22,7 +22,7 @@ Scene Furnace(float albedo, bool with_block = false) {
 }
 
 struct Radiance {
-  double mean = 0, worst = 0;   // worst: largest deviation of a node from `expected`
+  double mean = 0, worst = 0;  // worst: largest deviation of a node from `expected`
 };
 Radiance MeanRadiance(const Solution& s, double expected) {
   const auto area = NodeAreas(s.mesh, s.hidden);

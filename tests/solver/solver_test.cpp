@@ -139,7 +139,7 @@ TEST(SolverTest, AnOpenSceneLosesWhatEscapes) {
   SceneBuilder b;
   const uint32_t lamp = b.AddEmitter(Rgb::Constant(1));
   const uint32_t floor = b.AddLambert(Rgb::Constant(0.5f));
-  b.AddQuad({-0.5f, 1, -0.5f}, {0.5f, 1, -0.5f}, {0.5f, 1, 0.5f}, {-0.5f, 1, 0.5f}, lamp);   // looks down
+  b.AddQuad({-0.5f, 1, -0.5f}, {0.5f, 1, -0.5f}, {0.5f, 1, 0.5f}, {-0.5f, 1, 0.5f}, lamp);  // looks down
   b.AddQuad({-0.5f, 0, -0.5f}, {-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0, -0.5f}, floor);
   SolveOptions o;
   o.mesh.max_edge = 0.1f;
@@ -178,8 +178,8 @@ TEST(SolverTest, LedgerCountsWhatMirrorsReflect) {
   EXPECT_LT(ledger.Closure(), 1e-5);
 }
 
-// Portions make the shot field patchy and delta areas stand for it less well: 1.2 % of the light is lost at 96
-// delta areas, 0.1 % at 1536 (docs/validation.md#step-fraction).
+// Portions make the shot field patchy and delta areas stand for it less well: 1.2 % of the light is lost at
+// 96 delta areas, 0.1 % at 1536 (docs/validation.md#step-fraction).
 TEST(SolverTest, ShootingInPortionsReachesTheSameSolution) {
   const Scene scene = MakeRoom(Metal(0.5f)).scene;
   SolveOptions whole = Coarse();
@@ -256,7 +256,8 @@ TEST(SolverTest, OptionsOutOfRangeSaySo) {
   EXPECT_EQ(SolveOptions().Validate(), "");
 }
 
-// Brushed metal throws the lamp's light up to the ceiling in a patch; a Lambertian of the same flux spreads it.
+// Brushed metal throws the lamp's light up to the ceiling in a patch; a Lambertian of the same flux spreads
+// it.
 TEST(SolverTest, AMetalBlockThrowsAPatchOfLightOntoTheCeiling) {
   const auto solve = [](const Reflectance& r) {
     SceneBuilder b;
@@ -287,7 +288,8 @@ TEST(SolverTest, AMetalBlockThrowsAPatchOfLightOntoTheCeiling) {
   };
   // The mirror image of the lamp in the block's top, seen on the ceiling: x from -1.4 to +1.4.
   const double patch_metal = ceiling_flux(metal, {1.3f, 3, 0}), patch_matt = ceiling_flux(matt, {1.3f, 3, 0});
-  const double aside_metal = ceiling_flux(metal, {-1.3f, 3, 0}), aside_matt = ceiling_flux(matt, {-1.3f, 3, 0});
+  const double aside_metal = ceiling_flux(metal, {-1.3f, 3, 0}),
+               aside_matt = ceiling_flux(matt, {-1.3f, 3, 0});
   EXPECT_GT(patch_metal, 3 * patch_matt);
   EXPECT_LT(aside_metal, 0.5 * aside_matt);
 }

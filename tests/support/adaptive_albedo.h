@@ -18,7 +18,7 @@ namespace lobe::test {
 inline double AdaptiveAlbedo(const std::function<double(const Vec3d&, const Vec3d&)>& f, double cos_theta_i,
                              double width) {
   using Rule = boost::math::quadrature::gauss_kronrod<double, 31>;
-  constexpr double kTolerance = 1e-6;   // models evaluated in float are noisy at 1e-7
+  constexpr double kTolerance = 1e-6;  // models evaluated in float are noisy at 1e-7
   constexpr int kDepth = 5;
   const double theta_i = std::acos(cos_theta_i);
   const Vec3d wi(std::sin(theta_i), 0, cos_theta_i);
@@ -38,9 +38,9 @@ inline double AdaptiveAlbedo(const std::function<double(const Vec3d&, const Vec3
     const double s = std::sin(theta), c = std::cos(theta);
     double sum = 0;
     for (size_t i = 0; i + 1 < azimuth_cuts.size(); ++i) {
-      sum += Rule::integrate(
-          [&](double phi) { return f(wi, Vec3d(s * std::cos(phi), s * std::sin(phi), c)); }, azimuth_cuts[i],
-          azimuth_cuts[i + 1], kDepth, kTolerance);
+      sum +=
+          Rule::integrate([&](double phi) { return f(wi, Vec3d(s * std::cos(phi), s * std::sin(phi), c)); },
+                          azimuth_cuts[i], azimuth_cuts[i + 1], kDepth, kTolerance);
     }
     return 2 * sum * s * c;
   };

@@ -13,8 +13,8 @@ namespace lobe::test {
 /// A convex glossy block in a black room whose walls emit 1: by reciprocity each node's lobe is the block's
 /// directional albedo a(wo).
 struct GlossFurnace {
-  double stated = 0;   ///< flux-weighted error of the material's lobe table
-  double worst = 0;    ///< of the nodes: cos-weighted relative L2 difference of lobe and albedo
+  double stated = 0;  ///< flux-weighted error of the material's lobe table
+  double worst = 0;   ///< of the nodes: cos-weighted relative L2 difference of lobe and albedo
 
   explicit GlossFurnace(const Reflectance& reflectance) {
     SceneBuilder b;
@@ -36,7 +36,8 @@ struct GlossFurnace {
         for (int j = 0; j < 8; ++j) {
           // Equal areas of the projected disc: cosine-weighted.
           const double rho = std::sqrt((i + 0.5) / 32), phi = 2 * std::numbers::pi * (j + 0.5) / 8;
-          const Vec3 wo(float(rho * std::cos(phi)), float(rho * std::sin(phi)), float(std::sqrt(1 - rho * rho)));
+          const Vec3 wo(float(rho * std::cos(phi)), float(rho * std::sin(phi)),
+                        float(std::sqrt(1 - rho * rho)));
           const double a = material.Albedo(wo.z())[0], off = s.total.Radiance(n, wo, basis.data())[0] - a;
           error2 += off * off;
           norm2 += a * a;
