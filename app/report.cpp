@@ -25,7 +25,8 @@ constexpr LedgerEntry kLedger[] = {
     {"truncated", &Ledger::truncated, "by cut-off lobes"},
     {"unshot", &Ledger::unshot, "still waiting"},
     {"sent", &Ledger::sent, "emitted and passed on"},
-    {"delivered", &Ledger::delivered, "of it, arrived"},
+    {"passed on", &Ledger::passed_on, "by mirrors"},
+    {"delivered", &Ledger::delivered, "of both, arrived"},
     {"reflected", &Ledger::reflected, "of that, reflected"},
 };
 constexpr size_t kBalanceEntries = 8;  ///< the first ones balance; the others are turnover

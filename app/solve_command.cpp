@@ -1,5 +1,6 @@
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <memory>
 
 #include "app/commands.h"
@@ -54,7 +55,7 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
   out["residual"] = s.residual();
   out["solve_seconds"] = s.solve_seconds;
   out["cpu_seconds"] = cpu_seconds;
-  out["time_split"] = {{"cutting", split.cutting},
+  out["time_split"] = {{"choosing", split.choosing},
                        {"rays", split.rays},
                        {"accumulation", split.accumulation},
                        {"lobe_reads", split.lobe_reads},
@@ -94,10 +95,9 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
   console.Say(LedgerText(solution.ledger));
   const double emitted = Total(solution.ledger.emitted), mirrored = Total(solution.ledger.mirrored);
   if (mirrored > 0.001 * emitted) {
-    console.Warn(
-        Format("%.1f", 100 * mirrored / emitted) +
-        " % of the emitted power fell on ideal mirrors, which the solver does not follow: light thrown by "
-        "mirrors is missing from the lobes");
+    console.Warn(Format("%.1f", 100 * mirrored / emitted) +
+                 " % of the emitted power fell on ideal mirrors, where shooting stops: light thrown by mirrors "
+                 "is missing from the lobes; --transport links follows it");
   }
   console.Say(MeshText(solution));
   console.Say(StopText(solution) + Format("; %.2f s", solution.solve_seconds) +
@@ -133,6 +133,21 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->type_name("M")
       ->capture_default_str();
   flags->lobes.AddTo(solve);
+  const std::map<std::string, Transport> transports = {
+      {"shooting", Transport::kShooting}, {"links", Transport::kLinks}, {"auto", Transport::kAuto}};
+  solve
+      ->add_option("--transport", o.transport,
+                   "How reflected light travels: by shooting, through links, or auto, which is links")
+      ->transform(CLI::CheckedTransformer(transports, CLI::ignore_case).description(""))
+      ->type_name("HOW")
+      ->default_str("auto");
+  solve
+      ->add_option("--links", o.links,
+                   "Links (rays traced once) per diffuse node; glossy nodes take more, by their degree")
+      ->type_name("M")
+      ->capture_default_str();
+  solve->add_flag("--plain-sweeps{false}", o.accelerate,
+                  "No shooting ahead and no thinner links for dim bounces: slower, to check these against");
   solve->add_option("--light-samples", o.light_samples, "Shadow rays per node over all lamps together")
       ->type_name("N")
       ->capture_default_str();

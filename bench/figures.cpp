@@ -467,7 +467,7 @@ void Split() {
           const Received r =
               receiver.Gather(n, *field, field == &emission ? o.light_samples : o.delta_areas,
                               field == &emission ? 0.0f : s.direct.Flux(n).sum(), 1, out.data(), timed);
-          timed_sum.seconds_cutting += r.seconds_cutting;
+          timed_sum.seconds_choosing += r.seconds_choosing;
           timed_sum.seconds_rays += r.seconds_rays;
           timed_sum.seconds_accumulating += r.seconds_accumulating;
           if (record) {
@@ -478,7 +478,7 @@ void Split() {
       }
     };
     gather(true, true);
-    const double whole = timed_sum.seconds_cutting + timed_sum.seconds_rays + timed_sum.seconds_accumulating;
+    const double whole = timed_sum.seconds_choosing + timed_sum.seconds_rays + timed_sum.seconds_accumulating;
     std::vector<double> ratios, rates;
     for (int run = 0; run < 5; ++run) {
       const double t0 = CpuSeconds();
@@ -496,7 +496,7 @@ void Split() {
     std::sort(ratios.begin(), ratios.end());
     std::sort(rates.begin(), rates.end());
     std::printf("| %s | %.2f M | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n", name, double(count) * 1e-6,
-                rates[2], ratios[2], 100 * timed_sum.seconds_cutting / whole,
+                rates[2], ratios[2], 100 * timed_sum.seconds_choosing / whole,
                 100 * timed_sum.seconds_rays / whole, 100 * timed_sum.seconds_accumulating / whole);
   }
 }

@@ -12,6 +12,7 @@
 
 #include "brdf/frame.h"
 #include "scene/input_error.h"
+#include "scene/mirror.h"
 #include "solver/hash.h"
 
 namespace lobe {
@@ -180,65 +181,56 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
   return lit;
 }
 
-Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tracer, uint64_t seed) {
-  constexpr int kSide = 8;  // strata a side
-  static_assert(kSide * kSide == Exposure::kProbes);
-  Exposure out;
-  const size_t nodes = mesh.node_count();
-  out.hidden.assign(nodes, 0);
-  std::vector<std::vector<Exposure::LostRay>> lost(nodes);
-
-  const auto reaches_nodes = [&](const RayHit& hit) {
-    return mesh.roots[2 * hit.face + size_t(hit.side)] != kNone;
-  };
-  tbb::parallel_for(size_t(0), nodes, [&](size_t node) {
-    RandomStream random(Mix(Mix(seed, 0xe9), node));
-    const Frame frame(mesh.node_sample_normal[node]), shading(mesh.node_normal[node]);
-    Ray rays[Exposure::kProbes];
-    RayHit hits[Exposure::kProbes];
-    for (int i = 0; i < Exposure::kProbes; ++i) {
-      const Vec3 w = frame.ToWorld(
-          CosineDirection((i / kSide + random.Next()) / kSide, (i % kSide + random.Next()) / kSide));
-      rays[i] = RayFrom(mesh.node_sample_position[node], frame.z, w, tracer.epsilon());
-    }
-    tracer.Intersect(rays, hits, /*coherent=*/false);
-    int blocked = 0;
-    for (int i = 0; i < Exposure::kProbes; ++i) {
-      if (hits[i].hit() && reaches_nodes(hits[i])) continue;
-      blocked += hits[i].hit();
-      lost[node].push_back({shading.ToLocal(rays[i].direction), !hits[i].hit()});
-    }
-    out.hidden[node] = 2 * blocked > Exposure::kProbes;
-  });
-  for (const auto& rays : lost) {
-    out.lost_begin.push_back(uint32_t(out.lost.size()));
-    out.lost.insert(out.lost.end(), rays.begin(), rays.end());
-  }
-  out.lost_begin.push_back(uint32_t(out.lost.size()));
-
+EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
+                              const std::vector<const MaterialLobes*>& mirrors, uint64_t seed) {
+  constexpr int kProbes = 1 << 14, kMaxMirrors = 16;
   const auto emitters = FindEmitters(scene);
   const EmitterChoice choice(emitters);
-  constexpr int kEmissionProbes = 1 << 14;
-  std::vector<uint8_t> fate(kEmissionProbes);  // 1 escaped, 2 blocked
-  std::vector<size_t> source(kEmissionProbes);
-  tbb::parallel_for(0, kEmissionProbes, [&](int i) {
+  struct Fate {
+    size_t emitter;
+    Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero();
+    int rays = 0;
+  };
+  std::vector<Fate> fates(kProbes);
+  tbb::parallel_for(0, kProbes, [&](int i) {
+    Fate& fate = fates[i];
     RandomStream random(Mix(Mix(seed, 0xe317), i));
-    const Emitter& e = emitters[source[i] = choice.At((i + random.Next()) / kEmissionProbes)];
+    const Emitter& e = emitters[fate.emitter = choice.At((i + random.Next()) / kProbes)];
     const Vec3 w = Frame(e.normal).ToWorld(CosineDirection(random.Next(), random.Next()));
-    const Vec3 at = PointOnTriangle(e.corners, random.Next(), random.Next());
-    const RayHit hit = tracer.Intersect(RayFrom(at, e.normal, w, tracer.epsilon()));
-    fate[i] = !hit.hit() ? 1 : reaches_nodes(hit) ? 0 : 2;
+    Ray ray = RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.epsilon());
+    Rgb throughput = Rgb::Constant(1);
+    for (int mirror = 0; mirror <= kMaxMirrors; ++mirror) {
+      const RayHit hit = tracer.Intersect(ray);
+      ++fate.rays;
+      if (!hit.hit()) {
+        fate.escaped = throughput;
+        return;
+      }
+      const auto where = mesh.Locate(hit.face, hit.side, hit.u, hit.v);
+      if (where.element == kNone) {
+        fate.blocked = throughput;
+        return;
+      }
+      const MaterialLobes* lobes = mirrors[scene.faces[hit.face].material];
+      if (!lobes) return;
+      const SurfacePoint at = FindSurfacePoint(scene, mesh, ray, hit, where);
+      throughput *= lobes->MirrorAlbedo(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
+      ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at), tracer.epsilon());
+    }
   });
   // Every probe carries the same power, in the colours of its emitter.
-  Eigen::Array3d power[3] = {Eigen::Array3d::Zero(), Eigen::Array3d::Zero(), Eigen::Array3d::Zero()};
-  for (int i = 0; i < kEmissionProbes; ++i) {
-    const Rgb& radiance = emitters[source[i]].radiance;
-    power[fate[i]] += (radiance / radiance.sum()).cast<double>();
+  EmissionLoss out;
+  Eigen::Array3d all = Eigen::Array3d::Zero();
+  for (const Fate& fate : fates) {
+    const Rgb& radiance = emitters[fate.emitter].radiance;
+    const Rgb share = radiance / radiance.sum();
+    all += share.cast<double>();
+    out.escaped += (share * fate.escaped).cast<double>();
+    out.blocked += (share * fate.blocked).cast<double>();
+    out.rays += fate.rays;
   }
-  const Eigen::Array3d all = power[0] + power[1] + power[2];
-  out.emission_escaped = (all > 0).select(power[1] / all, 0.0);
-  out.emission_blocked = (all > 0).select(power[2] / all, 0.0);
-  out.rays = nodes * Exposure::kProbes + kEmissionProbes;
+  out.escaped = (all > 0).select(out.escaped / all, 0.0);
+  out.blocked = (all > 0).select(out.blocked / all, 0.0);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "brdf/material_lobes.h"
 #include "scene/mesh.h"
 #include "scene/ray_tracer.h"
 #include "scene/scene.h"
@@ -16,26 +17,14 @@ namespace lobe {
 /// Throws InputError if nothing emits.
 std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed);
 
-/// What the nodes see around them, from kProbes cosine-distributed rays each.
-struct Exposure {
-  static constexpr int kProbes = 64;
-
-  /// Nodes most of whose rays meet a black back or an unlit side: they are inside something.
-  std::vector<uint8_t> hidden;
-
-  /// Rays whose light reaches no node. Ledger only.
-  struct LostRay {
-    Vec3 direction_local;
-    bool escaped;  ///< left the scene; else blocked
-  };
-  std::vector<uint32_t> lost_begin;  ///< per node, into `lost`; one more at the end
-  std::vector<LostRay> lost;
-
-  /// The same for emission, as fractions of each channel's emitted power.
-  Eigen::Array3d emission_escaped = Eigen::Array3d::Zero(), emission_blocked = Eigen::Array3d::Zero();
+/// Emitted light that reaches no node, as fractions of each channel's emitted power; for the ledger. With
+/// `mirrors` (per material: an ideal mirror that light goes on from) what is lost behind mirrors counts too.
+struct EmissionLoss {
+  Eigen::Array3d escaped = Eigen::Array3d::Zero(), blocked = Eigen::Array3d::Zero();
   uint64_t rays = 0;
 };
-Exposure FindExposure(const Scene& scene, const Mesh& mesh, const RayTracer& tracer, uint64_t seed);
+EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
+                              const std::vector<const MaterialLobes*>& mirrors, uint64_t seed);
 
 /// One emitting side of an input face.
 struct Emitter {

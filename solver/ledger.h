@@ -16,13 +16,14 @@ struct Ledger {
   Power sent{};       ///< emitted, and unshot light that steps have moved on
   Power delivered{};  ///< irradiance x area, summed over receiving nodes
   Power absorbed{};   ///< delivered x (1 - albedo), angle by angle
-  Power reflected{};  ///< flux of the lobes that delivered light made
-  Power mirrored{};   ///< reflected by ideal mirrors, which shooting does not follow
-  Power truncated{};  ///< delivered - absorbed - reflected - mirrored: what the lobes' tables lose
+  Power reflected{};  ///< reflected, or let through sheets: flux of the lobes that delivered light made
+  Power mirrored{};   ///< reflected by ideal mirrors, where shooting stops
+  Power passed_on{};  ///< reflected by ideal mirrors and carried on by links
+  Power truncated{};  ///< delivered - absorbed - reflected - by mirrors: what the lobes' tables lose
   Power escaped{};    ///< sent along rays that leave the scene
-  Power blocked{};    ///< sent to black backs, and to sides without nodes
+  Power blocked{};    ///< sent to black backs, to sides without nodes, and beyond Links::kMaxMirrors mirrors
   Power unshot{};     ///< still waiting at the end
-  /// Delivered minus (sent - escaped - blocked): point collocation does not conserve power. Tends to 0
+  /// Delivered minus (sent + passed_on - escaped - blocked): point collocation does not conserve power. Tends to 0
   /// as the mesh is refined.
   Power imbalance{};
 

@@ -1,5 +1,6 @@
 #include "solver/node_lobes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -43,6 +44,26 @@ std::span<float> NodeLobes::patch_values(uint32_t patch) {
 
 std::span<const float> NodeLobes::patch_values(uint32_t patch) const {
   return const_cast<NodeLobes*>(this)->patch_values(patch);
+}
+
+void NodeLobes::SetZero() { std::fill(values_.begin(), values_.end(), 0.0f); }
+
+void NodeLobes::AddScaled(const NodeLobes& other, const std::vector<std::array<float, 3>>& share) {
+  for (uint32_t n = 0; n < node_count(); ++n) {
+    const auto& s = share[node_patch_[n]];
+    SubtractScaled(n, other, {-s[0], -s[1], -s[2]});
+  }
+}
+
+void NodeLobes::SubtractScaled(uint32_t node, const NodeLobes& other, const std::array<float, 3>& share) {
+  const PartDegrees& d = degrees(node);
+  float* to = base(node);
+  const float* from = other.base(node);
+  for (const int count : {d.base_count(), d.gloss_count()}) {
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < count; ++k) *to++ -= share[c] * *from++;
+    }
+  }
 }
 
 Rgb NodeLobes::Flux(uint32_t node) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -46,6 +47,12 @@ class NodeLobes {
   size_t patch_count() const { return patch_degrees_.size(); }
   const PartDegrees& patch_degrees(uint32_t p) const { return patch_degrees_[p]; }
   size_t bytes() const { return values_.size() * sizeof(float); }
+
+  void SetZero();
+  /// this += share of `other`, share per patch and channel. Same layout.
+  void AddScaled(const NodeLobes& other, const std::vector<std::array<float, 3>>& share);
+  /// The same for one node, subtracted.
+  void SubtractScaled(uint32_t node, const NodeLobes& other, const std::array<float, 3>& share);
 
   /// Integral of L cos over the hemisphere (W m^-2), base and gloss together.
   Rgb Flux(uint32_t node) const;

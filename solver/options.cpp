@@ -5,6 +5,18 @@
 
 namespace lobe {
 
+const char* Name(Transport transport) {
+  switch (transport) {
+    case Transport::kShooting:
+      return "shooting";
+    case Transport::kLinks:
+      return "links";
+    case Transport::kAuto:
+      return "auto";
+  }
+  return "";
+}
+
 std::string SolveOptions::Validate() const {
   std::ostringstream out;
   if (!(mesh.max_edge > 0) || !std::isfinite(mesh.max_edge)) {
@@ -19,6 +31,8 @@ std::string SolveOptions::Validate() const {
     out << "forced lmax " << lobes.force_l_max << " is out of range: 0 to 32 is expected";
   } else if (!(lobes.error > 0) || !(lobes.error <= 10)) {
     out << "lobe error " << lobes.error * 100 << " % is out of range: above 0 to 1000 is expected";
+  } else if (links < 8 || links > 1'000'000) {
+    out << "links " << links << " is out of range: 8 to 1000000 is expected";
   } else if (light_samples < 1 || light_samples > 1'000'000) {
     out << "light samples " << light_samples << " is out of range: 1 to 1000000 is expected";
   } else if (delta_areas < 1 || delta_areas > 1'000'000) {

@@ -8,9 +8,25 @@
 
 namespace lobe {
 
+/// How reflected light travels between nodes. Straight emission always travels by shooting.
+enum class Transport {
+  kShooting,  ///< shadow rays to delta areas, chosen anew in every step; stops at ideal mirrors
+  kLinks,     ///< sweeps through links traced once; follows ideal mirrors
+  kAuto,      ///< links (docs/validation.md#transport says where each wins)
+};
+const char* Name(Transport transport);
+
 struct SolveOptions {
   TessellateOptions mesh;
   LobeOptions lobes;
+  Transport transport = Transport::kAuto;
+  /// Links per diffuse node, >= 8; glossy nodes take more, in proportion to the coefficients of their lobes.
+  /// Time and memory (4 bytes a link) grow in proportion; noise falls a little faster than the square root.
+  /// Default measured in docs/validation.md#links.
+  int links = 256;
+  /// Shoot ahead what a coarse solution expects, and use fewer links for dim late bounces. Off: plain sweeps,
+  /// slower, to check these against.
+  bool accelerate = true;
   /// Shadow rays per node over all emitters together, shared out by their expected contribution, >= 1.
   /// Time grows in proportion; the error of soft shadows falls about as its inverse. Default measured in
   /// docs/validation.md#light-samples.

@@ -286,7 +286,7 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
   Cut(node, field, samples, received_before, seed, work);
   work.rays = rays_.size();
   if (rays_.empty()) return work;
-  if (timed) work.seconds_cutting = Seconds(start);
+  if (timed) work.seconds_choosing = Seconds(start);
 
   const auto traced = timed ? Clock::now() : Clock::time_point();
   occluded_.resize(rays_.size());

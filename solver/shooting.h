@@ -12,6 +12,7 @@
 #include "solver/form_factor.h"
 #include "solver/hash.h"
 #include "solver/node_lobes.h"
+#include "solver/received.h"
 #include "solver/solution.h"
 
 namespace lobe {
@@ -48,15 +49,6 @@ class ShootingField {
   const NodeLobes* lobes_ = nullptr;
   std::vector<Root> roots_;
   std::vector<Rgb> cell_radiance_;
-};
-
-/// What a receiver got of one step, for the ledger (W m^-2) and for counting work.
-struct Received {
-  Rgb delivered = Rgb::Zero(), absorbed = Rgb::Zero(), mirrored = Rgb::Zero();
-  Rgb reflected = Rgb::Zero();  ///< by albedo, angle by angle; the lobes' flux should equal it
-  uint64_t rays = 0;
-  uint64_t lobe_reads = 0, lobe_writes = 0;  ///< directional evaluations and accumulations
-  double seconds_cutting = 0, seconds_rays = 0, seconds_accumulating = 0;
 };
 
 /// Gathers a step's light at one receiving node after another: the receiving half of progressive shooting

@@ -20,6 +20,8 @@ constexpr StopReason kStopReasons[] = {StopReason::kConverged, StopReason::kStep
 constexpr GlossKind kGlossKinds[] = {GlossKind::kNone, GlossKind::kLobe, GlossKind::kSharp,
                                      GlossKind::kMirror};
 
+constexpr Transport kTransports[] = {Transport::kShooting, Transport::kLinks, Transport::kAuto};
+
 /// JSON has no infinity and no NaN, which a diverging solution may hold; they become the largest float.
 double Finite(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max();
@@ -54,7 +56,7 @@ constexpr std::pair<const char*, Ledger::Power Ledger::*> kLedgerEntries[] = {
     {"emitted", &Ledger::emitted},     {"sent", &Ledger::sent},           {"delivered", &Ledger::delivered},
     {"absorbed", &Ledger::absorbed},   {"reflected", &Ledger::reflected}, {"mirrored", &Ledger::mirrored},
     {"truncated", &Ledger::truncated}, {"escaped", &Ledger::escaped},     {"blocked", &Ledger::blocked},
-    {"unshot", &Ledger::unshot},       {"imbalance", &Ledger::imbalance}};
+    {"passedOn", &Ledger::passed_on},  {"unshot", &Ledger::unshot},       {"imbalance", &Ledger::imbalance}};
 
 json Settings(const SolveOptions& o) {
   json out = {{"maxEdge", JsonNumber(o.mesh.max_edge)},
@@ -62,6 +64,9 @@ json Settings(const SolveOptions& o) {
               {"borderInset", JsonNumber(o.mesh.border_inset)},
               {"lMax", o.lobes.l_max},
               {"lobeError", o.lobes.error},
+              {"transport", Name(o.transport)},
+              {"links", o.links},
+              {"accelerate", o.accelerate},
               {"lightSamples", o.light_samples},
               {"deltaAreas", o.delta_areas},
               {"residual", o.residual},
@@ -81,6 +86,9 @@ SolveOptions ReadSettings(const GltfJson& fields) {
   o.lobes.l_max = RequiredInt(fields, "lMax");
   o.lobes.error = RequiredNumber(fields, "lobeError");
   o.lobes.force_l_max = fields.Has("forceLMax") ? RequiredInt(fields, "forceLMax") : -1;
+  o.transport = ReadName(fields, "transport", kTransports);
+  o.links = RequiredInt(fields, "links");
+  o.accelerate = fields.Bool("accelerate", true);
   o.light_samples = RequiredInt(fields, "lightSamples");
   o.delta_areas = RequiredInt(fields, "deltaAreas");
   o.residual = RequiredNumber(fields, "residual");

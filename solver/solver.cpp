@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -11,8 +12,12 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "solver/coarse_transport.h"
 #include "solver/exposure.h"
 #include "solver/hash.h"
+#include "solver/link_gather.h"
+#include "solver/links.h"
+#include "solver/losses.h"
 #include "solver/shooting.h"
 
 namespace lobe {
@@ -20,6 +25,13 @@ namespace {
 
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
+
+// A glossy node takes this many links per coefficient of its lobe, or noise shows as blotches
+// (docs/validation.md#links).
+constexpr int kLinksPerCoefficient = 8;
+
+// Shooting needs links only to see which nodes are hidden and where light is lost.
+constexpr int kProbes = 64;
 
 Ledger::Power& operator+=(Ledger::Power& a, const Eigen::Array3d& b) {
   for (int c = 0; c < 3; ++c) a[c] += b[c];
@@ -32,45 +44,18 @@ class ProgressiveSolver {
       : control_(control), start_(std::chrono::steady_clock::now()), tracer_(scene) {
     s_.scene = std::move(scene);
     s_.options = options;
-    const auto lit = FindLitSides(s_.scene, tracer_, options.seed);
-    s_.mesh = Tessellate(s_.scene, options.mesh, lit);
-    exposure_ = FindExposure(s_.scene, s_.mesh, tracer_, options.seed);
-    s_.hidden = exposure_.hidden;
-    rays_ = exposure_.rays;
-    area_ = NodeAreas(s_.mesh, s_.hidden);
-    emitters_ = FindEmitters(s_.scene);
-
-    TableCache cache;
-    for (const auto& material : s_.scene.materials) {
-      materials_.emplace_back(material.reflectance, options.lobes, cache);
-      s_.material_kinds.push_back(materials_.back().kind());
-      s_.material_errors.push_back(materials_.back().gloss.error);
-    }
-    std::vector<PartDegrees> degrees;
-    for (const auto& patch : s_.mesh.patches) {
-      const auto& lobes = materials_[patch.material];
-      degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
-    }
-    s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, degrees);
-    received_.assign(s_.mesh.node_count(), 0.0f);
-    for (const auto& e : emitters_) {
-      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
-    }
-    s_.ledger.emitted += emitted_;
+    by_links_ = options.transport != Transport::kShooting;
   }
 
   Solution Run() {
-    s_.ledger.sent += emitted_;
-    s_.ledger.escaped += emitted_ * exposure_.emission_escaped;
-    s_.ledger.blocked += emitted_ * exposure_.emission_blocked;
-    const ShootingField emission(s_.mesh, emitters_);
-    if (Step(0, emission, s_.options.light_samples, 0)) {
+    Prepare();
+    if (Emission() && TraceLinks() && EmissionByMirrors()) {
       s_.direct = s_.total;
       s_.stop_reason = Iterate();
     } else {
       // Told to stop before emission was through: all of it is still to be shot.
-      s_.ledger.sent = s_.ledger.escaped = s_.ledger.blocked = {};
-      s_.ledger.unshot += emitted_;
+      for (NodeLobes* lobes : {&s_.total, &s_.direct, &s_.unshot}) lobes->SetZero();
+      s_.ledger = {};
       s_.stop_reason = WhyStop();
     }
     Close();
@@ -83,158 +68,268 @@ class ProgressiveSolver {
   }
   bool Interrupted() const { return control_.stop && control_.stop->load(std::memory_order_relaxed); }
   bool OutOfTime() const { return s_.options.max_seconds > 0 && Seconds() > s_.options.max_seconds; }
+  bool MustStop() const { return Interrupted() || OutOfTime(); }
   StopReason WhyStop() const { return Interrupted() ? StopReason::kInterrupted : StopReason::kTimeLimit; }
+
+  void Prepare() {
+    const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed);
+    s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit);
+    emitters_ = FindEmitters(s_.scene);
+    TableCache cache;
+    for (const auto& material : s_.scene.materials) {
+      materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
+      s_.material_kinds.push_back(materials_.back().kind());
+      s_.material_errors.push_back(materials_.back().gloss.error);
+    }
+    std::vector<PartDegrees> degrees;
+    for (const auto& patch : s_.mesh.patches) {
+      const auto& lobes = materials_[patch.material];
+      degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
+    }
+    s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, degrees);
+    s_.hidden.assign(s_.mesh.node_count(), 0);
+    received_.assign(s_.mesh.node_count(), 0.0f);
+    for (const auto& e : emitters_) {
+      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
+    }
+  }
+
+  bool Emission() {
+    const ShootingField field(s_.mesh, emitters_);
+    return GatherShot(0, field, s_.options.light_samples);
+  }
+
+  // Also finds the hidden nodes, and takes from them what emission gave them.
+  bool TraceLinks() {
+    Links::Options options;
+    options.links = by_links_ ? s_.options.links : kProbes;
+    options.per_coefficient = by_links_ ? kLinksPerCoefficient : 0;
+    options.follow_mirrors = by_links_;
+    options.seed = s_.options.seed;
+    links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
+      Report(0, fraction);
+      return MustStop();
+    });
+    if (links_->stopped()) return false;
+    rays_ += links_->rays();
+    s_.hidden = links_->hidden();
+    area_ = NodeAreas(s_.mesh, s_.hidden);
+    if (by_links_ && s_.options.accelerate) {
+      coarse_ = std::make_unique<CoarseTransport>(s_.mesh, *links_, materials_, area_, opposite_);
+    }
+    return true;
+  }
+
+  bool EmissionByMirrors() {
+    const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
+      return m.kind() == GlossKind::kMirror;
+    });
+    if (by_links_ && mirrors) {
+      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+        const auto gained = gained_.all(n);
+        std::copy(gained.begin(), gained.end(), s_.unshot.all(n).begin());
+      }
+      std::vector<Received> first = std::move(got_);
+      if (!GatherLinked(0, LinkField(s_.scene, s_.mesh), 1)) return false;
+      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+        auto gained = gained_.all(n);
+        auto straight = s_.unshot.all(n);
+        for (size_t i = 0; i < gained.size(); ++i) gained[i] += straight[i];
+        std::fill(straight.begin(), straight.end(), 0.0f);
+        got_[n] += first[n];
+      }
+    }
+    Commit(0, {}, uint32_t(emitters_.size()));
+    return true;
+  }
 
   StopReason Iterate() {
     for (int step = 1;; ++step) {
       if (s_.residual() <= s_.options.residual) return StopReason::kConverged;
       if (step > s_.options.max_steps) return StopReason::kStepLimit;
-      if (Interrupted() || OutOfTime()) return WhyStop();
+      if (MustStop()) return WhyStop();
       const size_t n = s_.history.size();
       if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
       if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
         return StopReason::kNotConverging;
       }
-      if (!ReflectedStep(step)) return WhyStop();
+      if (!(by_links_ ? Sweep(step) : ShootingStep(step))) return WhyStop();
     }
   }
 
-  // Takes nodes in order of unshot power until step_fraction of it is covered, and shoots them.
-  bool ReflectedStep(int step) {
-    const size_t nodes = s_.mesh.node_count();
-    std::vector<double> power(nodes);
-    double all = 0;
-    for (uint32_t n = 0; n < nodes; ++n) {
-      all += power[n] = std::abs(double(s_.unshot.Flux(n).sum())) * area_[n];
-    }
-    std::vector<uint32_t> order(nodes);
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return power[a] > power[b]; });
-    NodeLobes shooting = s_.unshot, kept = s_.unshot;
-    uint32_t shooters = 0;
-    double covered = 0;
-    for (const uint32_t n : order) {
-      const bool shoots = s_.options.step_fraction >= 1.0 || covered < s_.options.step_fraction * all;
-      auto cleared = shoots ? kept.all(n) : shooting.all(n);
-      std::fill(cleared.begin(), cleared.end(), 0.0f);
-      covered += power[n];
-      shooters += shoots && power[n] > 0;
-    }
-    const ShootingField field(s_.scene, s_.mesh, s_.hidden, shooting);
-    std::swap(s_.unshot, kept);
-    if (!Step(step, field, s_.options.delta_areas, shooters)) {
-      std::swap(s_.unshot, kept);  // as if the step had not begun
-      return false;
-    }
-    AccountSent(shooting);
+  // Sends all unshot light through the links, and with it what the coarse solution says will follow.
+  bool Sweep(int step) {
+    std::vector<std::array<float, 3>> ahead;
+    if (coarse_ && step > 1) ahead = coarse_->Ahead(s_.total, s_.unshot, area_);
+    shooting_ = s_.unshot;
+    if (!ahead.empty()) shooting_.AddScaled(s_.total, ahead);
+    const LinkField field(s_.scene, s_.mesh, shooting_);
+    const auto shooters = uint32_t(std::count(s_.hidden.begin(), s_.hidden.end(), 0));
+    if (!GatherLinked(step, field, Thinning())) return false;
+    Commit(step, ahead, shooters);
     return true;
   }
 
-  // Every node gathers `field`; false if told to stop, and then nothing has changed.
-  bool Step(int step, const ShootingField& field, int samples, uint32_t shooters) {
+  // Sparse links suffice for light that is dim against the first bounce: noise of a step is in proportion to
+  // what it moves.
+  int Thinning() const {
+    if (!s_.options.accelerate || s_.history.empty()) return 1;
+    const double dim = s_.residual() / s_.history.front().residual;
+    return dim > 0.3 ? 1 : dim > 0.1 ? 2 : dim > 0.03 ? 4 : 8;
+  }
+
+  // Takes nodes in order of unshot power until step_fraction of it is covered, and shoots them.
+  bool ShootingStep(int step) {
     const size_t nodes = s_.mesh.node_count();
-    std::vector<Received> received(nodes);
+    uint32_t shooters = 0;
+    shooting_ = s_.unshot;
+    if (s_.options.step_fraction < 1) {
+      std::vector<double> power(nodes);
+      double all = 0, covered = 0;
+      for (uint32_t n = 0; n < nodes; ++n) {
+        all += power[n] = std::abs(double(s_.unshot.Flux(n).sum())) * area_[n];
+      }
+      std::vector<uint32_t> order(nodes);
+      std::iota(order.begin(), order.end(), 0u);
+      std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return power[a] > power[b]; });
+      for (const uint32_t n : order) {
+        const auto shot = shooting_.all(n);
+        if (covered >= s_.options.step_fraction * all) std::fill(shot.begin(), shot.end(), 0.0f);
+        covered += power[n];
+      }
+    }
+    for (uint32_t n = 0; n < nodes; ++n) {
+      const auto shot = shooting_.all(n);
+      shooters += std::any_of(shot.begin(), shot.end(), [](float v) { return v != 0; });
+    }
+    const ShootingField field(s_.scene, s_.mesh, s_.hidden, shooting_);
+    if (!GatherShot(step, field, s_.options.delta_areas)) return false;
+    Commit(step, {}, shooters);
+    return true;
+  }
+
+  bool GatherShot(int step, const ShootingField& field, int samples) {
     tbb::enumerable_thread_specific<Receiver> receivers(
         [&] { return Receiver(s_.mesh, tracer_, materials_); });
+    return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
+      return receivers.local().Gather(n, field, samples, received_[n],
+                                      Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out, timed);
+    });
+  }
+
+  bool GatherLinked(int step, const LinkField& field, int thinning) {
+    tbb::enumerable_thread_specific<LinkReceiver> receivers(
+        [&] { return LinkReceiver(s_.mesh, *links_, materials_); });
+    return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
+      return receivers.local().Gather(n, field, thinning, out, timed);
+    });
+  }
+
+  // gather(node, out, timed) for every node that is not hidden, into gained_ and got_; false if told to
+  // stop, and then nothing else has changed.
+  template <typename Gather>
+  bool ForEachNode(int step, const Gather& gather) {
+    const size_t nodes = s_.mesh.node_count();
+    got_.assign(nodes, {});
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
     tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes, 16), [&](const tbb::blocked_range<size_t>& range) {
       if (stop.load(std::memory_order_relaxed)) return;
-      if (Interrupted() || OutOfTime()) {
+      if (MustStop()) {
         stop = true;
         return;
       }
-      Receiver& receiver = receivers.local();
       for (size_t n = range.begin(); n < range.end(); ++n) {
         auto out = gained_.all(uint32_t(n));
         std::fill(out.begin(), out.end(), 0.0f);
         if (s_.hidden[n]) continue;
         const bool timed = control_.time_split && n % 16 == 0;
-        received[n] = receiver.Gather(uint32_t(n), field, samples, received_[n],
-                                      Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out.data(), timed);
+        got_[n] = gather(uint32_t(n), out.data(), timed);
       }
       Report(step, double(done += range.size()) / double(nodes));
     });
-    if (stop) return false;
-    Commit(received);
-    StepRecord record;
-    record.step = step;
-    record.residual = UnshotMagnitude() / emitted_.sum();
-    record.seconds = Seconds();
-    record.rays = rays_;
-    record.shooters = step == 0 ? uint32_t(emitters_.size()) : shooters;
-    s_.history.push_back(record);
-    Report(step, 1.0);
-    return true;
+    return !stop;
   }
 
-  // Adds what was gained to total and unshot. In node order: sums do not depend on threads.
-  void Commit(const std::vector<Received>& received) {
+  // Makes a gathered step part of the solution: total = what was gathered of all that was ever shot, and
+  // unshot = total - all that was ever shot. What was shot ahead is so taken back. In node order: sums do not
+  // depend on threads.
+  void Commit(int step, const std::vector<std::array<float, 3>>& ahead, uint32_t shooters) {
     Ledger& ledger = s_.ledger;
-    for (uint32_t n = 0; n < received.size(); ++n) {
-      const Received& r = received[n];
-      const double area = area_[n];
-      rays_ += r.rays;
-      received_[n] += r.delivered.sum();
-      const Eigen::Array3d flux =
-          s_.hidden[n] ? Eigen::Array3d::Zero() : Eigen::Array3d(gained_.Flux(n).cast<double>());
-      ledger.delivered += r.delivered.cast<double>() * area;
-      ledger.absorbed += r.absorbed.cast<double>() * area;
-      ledger.mirrored += r.mirrored.cast<double>() * area;
-      ledger.reflected += flux * area;
-      ledger.truncated += (r.reflected.cast<double>() - flux) * area;
+    double unshot = 0;
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
       const auto gained = gained_.all(n);
-      auto total = s_.total.all(n), unshot = s_.unshot.all(n);
+      if (s_.hidden[n]) std::fill(gained.begin(), gained.end(), 0.0f);
+      auto total = s_.total.all(n), left = s_.unshot.all(n);
+      if (by_links_ || s_.options.step_fraction >= 1) {
+        std::fill(left.begin(), left.end(), 0.0f);
+      } else if (step > 0) {
+        const auto shot = shooting_.all(n);
+        for (size_t i = 0; i < left.size(); ++i) left[i] -= shot[i];
+      }
+      if (!ahead.empty()) s_.unshot.SubtractScaled(n, s_.total, ahead[s_.mesh.node_patch[n]]);
       for (size_t i = 0; i < gained.size(); ++i) {
         total[i] += gained[i];
-        unshot[i] += gained[i];
+        left[i] += gained[i];
       }
+      rays_ += got_[n].rays;
+      if (s_.hidden[n]) continue;
+      const Received& r = got_[n];
+      const double area = area_[n];
+      received_[n] += r.delivered.sum();
+      const Eigen::Array3d flux(gained_.Flux(n).cast<double>());
+      ledger.delivered += r.delivered.cast<double>() * area;
+      ledger.absorbed += r.absorbed.cast<double>() * area;
+      (by_links_ ? ledger.passed_on : ledger.mirrored) += r.mirrored.cast<double>() * area;
+      ledger.reflected += flux * area;
+      ledger.truncated += (r.reflected.cast<double>() - flux) * area;
+      // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
+      unshot += s_.unshot.Flux(n).cast<double>().abs().sum() * area;
       if (TimeSplit* split = control_.time_split) {
         // One receiver in 16 was timed and stands for the others.
         split->rays += 16 * r.seconds_rays;
-        split->cutting += 16 * r.seconds_cutting;
+        split->choosing += 16 * r.seconds_choosing;
         split->accumulation += 16 * r.seconds_accumulating;
         split->lobe_reads += r.lobe_reads;
         split->lobe_writes += r.lobe_writes;
       }
     }
+    StepRecord record;
+    record.step = step;
+    record.residual = unshot / emitted_.sum();
+    record.seconds = Seconds();
+    record.rays = rays_;
+    record.shooters = shooters;
+    s_.history.push_back(record);
+    Report(step, 1.0);
   }
 
-  // Power that left with `shooting`, and what of it the probes say reaches no node.
-  void AccountSent(const NodeLobes& shooting) {
-    std::vector<float> basis(kMaxBasisSize);
-    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
-      s_.ledger.sent += shooting.Flux(n).cast<double>() * area_[n];
-      for (uint32_t i = exposure_.lost_begin[n]; i < exposure_.lost_begin[n + 1]; ++i) {
-        const auto& lost = exposure_.lost[i];
-        const Rgb radiance = shooting.Radiance(n, lost.direction_local, basis.data());
-        (lost.escaped ? s_.ledger.escaped : s_.ledger.blocked) +=
-            radiance.cast<double>() * (std::numbers::pi / Exposure::kProbes * area_[n]);
-      }
-    }
-  }
-
-  Eigen::Array3d UnshotPower() const {
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) sum += s_.unshot.Flux(n).cast<double>() * area_[n];
-    return sum;
-  }
-
-  // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
-  double UnshotMagnitude() const {
-    double sum = 0;
-    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
-      sum += s_.unshot.Flux(n).cast<double>().abs().sum() * area_[n];
-    }
-    return sum;
-  }
-
+  // The ledger's entries that follow from what has been shot in all, total - unshot.
   void Close() {
     Ledger& ledger = s_.ledger;
-    ledger.unshot += UnshotPower();
-    for (int c = 0; c < 3; ++c) {
-      ledger.imbalance[c] = ledger.delivered[c] - (ledger.sent[c] - ledger.escaped[c] - ledger.blocked[c]);
+    ledger.emitted = ledger.sent = ledger.escaped = ledger.blocked = ledger.unshot = {};
+    ledger.emitted += emitted_;
+    if (s_.history.empty()) {
+      ledger.unshot = ledger.emitted;
+    } else {
+      std::vector<const MaterialLobes*> mirrors;
+      for (const auto& m : materials_) {
+        mirrors.push_back(by_links_ && m.kind() == GlossKind::kMirror ? &m : nullptr);
+      }
+      const EmissionLoss emission = FindEmissionLoss(s_.scene, s_.mesh, tracer_, mirrors, s_.options.seed);
+      const Losses reflected = FindLosses(s_.mesh, *links_, s_.total, s_.unshot, area_);
+      ledger.sent += emitted_ + reflected.sent;
+      ledger.escaped += emitted_ * emission.escaped + reflected.escaped;
+      ledger.blocked += emitted_ * emission.blocked + reflected.blocked;
+      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+        if (area_[n] > 0) ledger.unshot += s_.unshot.Flux(n).cast<double>() * area_[n];
+      }
     }
+    for (int c = 0; c < 3; ++c) {
+      ledger.imbalance[c] = ledger.delivered[c] -
+                            (ledger.sent[c] + ledger.passed_on[c] - ledger.escaped[c] - ledger.blocked[c]);
+    }
+    if (s_.history.empty()) ledger.imbalance = {};
     s_.solve_seconds = Seconds();
   }
 
@@ -249,12 +344,16 @@ class ProgressiveSolver {
   std::chrono::steady_clock::time_point start_;
   RayTracer tracer_;
   Solution s_;
-  Exposure exposure_;
+  bool by_links_ = true;
   std::vector<Emitter> emitters_;
   std::vector<MaterialLobes> materials_;
+  std::unique_ptr<Links> links_;
+  std::unique_ptr<CoarseTransport> coarse_;
+  std::vector<uint32_t> opposite_;
   std::vector<double> area_;
   std::vector<float> received_;  // per node: irradiance so far, summed over channels
-  NodeLobes gained_;
+  NodeLobes shooting_, gained_;
+  std::vector<Received> got_;
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
   uint64_t rays_ = 0;
   std::mutex report_mutex_;

@@ -19,9 +19,9 @@ struct Progress {
 /// Where the time of the inner loop went, summed over threads, and how often lobes were touched. Times are
 /// measured on one receiver in 16 and scaled, so that the clock does not slow what it measures.
 struct TimeSplit {
-  double cutting = 0;        ///< seconds: choosing delta areas, reading the shooters' lobes included
+  double choosing = 0;       ///< seconds: choosing delta areas, reading the shooters' lobes included
   double rays = 0;           ///< seconds: shadow rays
-  double accumulation = 0;   ///< seconds: from arriving light to the receiver's lobe
+  double accumulation = 0;   ///< seconds: from arriving light to the receiver's lobe; reading links
   uint64_t lobe_reads = 0;   ///< directional evaluations of a shooter's lobe; 0 in a diffuse scene
   uint64_t lobe_writes = 0;  ///< contributions accumulated into a glossy receiver; 0 in a diffuse scene
 };

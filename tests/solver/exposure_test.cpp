@@ -4,6 +4,7 @@
 
 #include "scene/input_error.h"
 #include "scene/tessellate.h"
+#include "solver/links.h"
 #include "solver/solution.h"
 #include "tests/support/scene_builder.h"
 
@@ -11,6 +12,19 @@ namespace lobe {
 namespace {
 
 using test::SceneBuilder;
+
+std::vector<MaterialLobes> LobesOf(const Scene& scene) {
+  TableCache cache;
+  std::vector<MaterialLobes> out;
+  for (const auto& m : scene.materials) out.emplace_back(m.reflectance, LobeOptions{}, cache);
+  return out;
+}
+
+// Ideal mirrors stop what is emitted.
+EmissionLoss LossWithoutMirrors(const Scene& scene, const Mesh& mesh, const RayTracer& tracer) {
+  return FindEmissionLoss(scene, mesh, tracer,
+                          std::vector<const MaterialLobes*>(scene.materials.size(), nullptr), 1);
+}
 
 // A room with a lamp; `boxes` of the given sidedness standing in it.
 Scene RoomWithBox(bool double_sided, float y0) {
@@ -55,7 +69,7 @@ TEST(ExposureTest, NodesUnderABoxAreHiddenAndOthersAreNot) {
       TessellateOptions options;
       options.max_edge = 0.3f;
       const Mesh mesh = Tessellate(scene, options, FindLitSides(scene, tracer, 1));
-      const Exposure e = FindExposure(scene, mesh, tracer, 1);
+      const Links links(scene, mesh, tracer, LobesOf(scene), {.links = 64});
       for (uint32_t n = 0; n < mesh.node_count(); ++n) {
         const Vec3& p = mesh.node_position[n];
         const auto& patch = mesh.patches[mesh.node_patch[n]];
@@ -63,24 +77,26 @@ TEST(ExposureTest, NodesUnderABoxAreHiddenAndOthersAreNot) {
         const bool under = p.y() < 0.001f && p.x() > 1.01f && p.x() < 1.99f && p.z() > 1.01f && p.z() < 1.99f;
         const bool clear = p.y() > 0.001f || p.x() < 0.99f || p.x() > 2.01f || p.z() < 0.99f || p.z() > 2.01f;
         if (under) {
-          EXPECT_TRUE(e.hidden[n]) << p.transpose();
+          EXPECT_TRUE(links.hidden()[n]) << p.transpose();
         }
         // The ceiling right above the lamp sees little but the lamp's black back: hidden or not is all one.
         if (clear && p.y() < 2.999f) {
-          EXPECT_FALSE(e.hidden[n]) << p.transpose();
+          EXPECT_FALSE(links.hidden()[n]) << p.transpose();
         }
       }
     }
   }
 }
 
-TEST(ExposureTest, ProbesOfAClosedRoomLoseNothing) {
+TEST(ExposureTest, AClosedRoomLosesNothing) {
   const Scene scene = RoomWithBox(false, 1);
   const RayTracer tracer(scene);
   const Mesh mesh = Tessellate(scene, {}, FindLitSides(scene, tracer, 1));
-  const Exposure e = FindExposure(scene, mesh, tracer, 1);
-  EXPECT_EQ(e.emission_escaped.maxCoeff(), 0);
-  for (const auto& ray : e.lost) EXPECT_FALSE(ray.escaped);
+  EXPECT_EQ(LossWithoutMirrors(scene, mesh, tracer).escaped.maxCoeff(), 0);
+  const Links links(scene, mesh, tracer, LobesOf(scene), {.links = 64});
+  for (uint32_t n = 0; n < mesh.node_count(); ++n) {
+    for (const uint32_t link : links.of(n)) EXPECT_NE(link, Links::kEscaped);
+  }
 }
 
 TEST(ExposureTest, EmissionOfALampInTheOpenEscapes) {
@@ -89,7 +105,7 @@ TEST(ExposureTest, EmissionOfALampInTheOpenEscapes) {
   const Scene scene = b.Build();
   const RayTracer tracer(scene);
   const Mesh mesh = Tessellate(scene, {}, FindLitSides(scene, tracer, 1));
-  EXPECT_EQ(FindExposure(scene, mesh, tracer, 1).emission_escaped.minCoeff(), 1);
+  EXPECT_EQ(LossWithoutMirrors(scene, mesh, tracer).escaped.minCoeff(), 1);
 }
 
 TEST(ExposureTest, HiddenNodesHaveNoWeight) {

@@ -172,10 +172,17 @@ TEST(SolverTest, LedgerCountsWhatMirrorsReflect) {
             b.AddMaterial("mirror", Metal(0)));
   SolveOptions o = Coarse();
   o.light_samples = 256;
-  const Ledger ledger = Solve(b.Build(), o).ledger;
+  const Scene scene = b.Build();
+  const Ledger ledger = Solve(scene, o).ledger;
   // 0.2 %: directions stand for delta areas, and Fresnel is convex.
-  EXPECT_NEAR(ledger.mirrored[0], std::numbers::pi * (0.9 + 0.1 / 21), 0.006);
+  EXPECT_NEAR(ledger.passed_on[0], std::numbers::pi * (0.9 + 0.1 / 21), 0.006);
+  EXPECT_EQ(ledger.mirrored[0], 0);
   EXPECT_LT(ledger.Closure(), 1e-5);
+  o.transport = Transport::kShooting;
+  const Ledger stopped = Solve(scene, o).ledger;
+  EXPECT_NEAR(stopped.mirrored[0], std::numbers::pi * (0.9 + 0.1 / 21), 0.006);
+  EXPECT_EQ(stopped.passed_on[0], 0);
+  EXPECT_LT(stopped.Closure(), 1e-5);
 }
 
 // Portions make the shot field patchy and delta areas stand for it less well: 1.2 % of the light is lost at
@@ -183,6 +190,7 @@ TEST(SolverTest, LedgerCountsWhatMirrorsReflect) {
 TEST(SolverTest, ShootingInPortionsReachesTheSameSolution) {
   const Scene scene = MakeRoom(Metal(0.5f)).scene;
   SolveOptions whole = Coarse();
+  whole.transport = Transport::kShooting;
   whole.delta_areas = 1024;
   SolveOptions portions = whole;
   whole.residual = portions.residual = 1e-4;

@@ -1,0 +1,121 @@
+#include "solver/coarse_transport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/LU>
+#include <tbb/parallel_for.h>
+
+namespace lobe {
+namespace {
+
+constexpr uint32_t kBlockOfNodes = 1024;
+
+// What leaves a cluster beyond this many times what it has gathered is not believed.
+constexpr double kMostAhead = 100;
+
+// Mean albedo over cos-weighted incidence, midpoints of equal strata of sin^2 theta.
+template <typename Albedo>
+Rgb HemisphericalMean(const Albedo& albedo) {
+  constexpr int kSteps = 32;
+  Rgb sum = Rgb::Zero();
+  for (int i = 0; i < kSteps; ++i) sum += albedo(std::sqrt(1 - (float(i) + 0.5f) / kSteps));
+  return sum / float(kSteps);
+}
+
+}  // namespace
+
+CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
+                                 const std::vector<MaterialLobes>& materials,
+                                 const std::vector<double>& node_area, const std::vector<uint32_t>& opposite)
+    : mesh_(mesh), cluster_(mesh.patches.size()) {
+  const size_t patches = mesh.patches.size();
+  std::vector<double> patch_area(patches, 0.0);
+  for (size_t n = 0; n < mesh.node_count(); ++n) patch_area[mesh.node_patch[n]] += node_area[n];
+  std::vector<uint32_t> order(patches);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return patch_area[a] > patch_area[b]; });
+  for (size_t i = 0; i < patches; ++i) cluster_[order[i]] = uint32_t(std::min<size_t>(i, kClusters - 1));
+  clusters_ = int(std::min<size_t>(patches, kClusters));
+
+  area_.assign(clusters_, 0.0);
+  other_side_.assign(clusters_, -1);
+  for (int c = 0; c < 3; ++c) albedo_[c] = through_[c] = Eigen::VectorXd::Zero(clusters_);
+  for (size_t p = 0; p < patches; ++p) {
+    const MaterialLobes& material = materials[mesh.patches[p].material];
+    const Rgb albedo = HemisphericalMean([&](float cosine) { return material.Albedo(cosine); });
+    area_[cluster_[p]] += patch_area[p];
+    for (int c = 0; c < 3; ++c) albedo_[c][cluster_[p]] += double(albedo[c]) * patch_area[p];
+  }
+  for (int k = 0; k < clusters_; ++k) {
+    for (int c = 0; c < 3; ++c) albedo_[c][k] /= std::max(area_[k], 1e-30);
+  }
+  (void)opposite;
+
+  // Blocks of nodes of one patch each, summed in order: the same bits for any number of threads.
+  struct Block {
+    uint32_t patch, begin, end;
+  };
+  std::vector<Block> blocks;
+  for (uint32_t p = 0; p < patches; ++p) {
+    for (uint32_t n = mesh.patches[p].node_begin; n < mesh.patches[p].node_end; n += kBlockOfNodes) {
+      blocks.push_back({p, n, std::min(n + kBlockOfNodes, mesh.patches[p].node_end)});
+    }
+  }
+  std::vector<Eigen::VectorXd> rows(blocks.size());
+  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t b) {
+    Eigen::VectorXd& row = rows[b] = Eigen::VectorXd::Zero(clusters_);
+    for (uint32_t n = blocks[b].begin; n < blocks[b].end; ++n) {
+      const auto targets = links.of(n);
+      const double weight = node_area[n] / double(targets.size());
+      for (const uint32_t link : targets) {
+        if (Links::IsNode(link)) {
+          row[cluster_[mesh.node_patch[link]]] += weight;
+        } else if (Links::IsChain(link)) {
+          for (const Links::Hop* hop = links.chain(link);; ++hop) {
+            if (Links::IsNode(hop->node)) {
+              row[cluster_[mesh.node_patch[hop->node]]] +=
+                  weight * (hop->fresnel[0] + hop->fresnel[1] + hop->fresnel[2]) / (3 * 65535.0);
+            }
+            if (hop->last) break;
+          }
+        }
+      }
+    }
+  });
+  form_factor_ = Eigen::MatrixXd::Zero(clusters_, clusters_);
+  for (size_t b = 0; b < blocks.size(); ++b) form_factor_.row(cluster_[blocks[b].patch]) += rows[b].transpose();
+  for (int k = 0; k < clusters_; ++k) form_factor_.row(k) /= std::max(area_[k], 1e-30);
+}
+
+std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total, const NodeLobes& unshot,
+                                                         const std::vector<double>& node_area) const {
+  Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(clusters_, 3), waiting = gathered;
+  for (uint32_t n = 0; n < mesh_.node_count(); ++n) {
+    if (node_area[n] == 0) continue;
+    const int k = int(cluster_[mesh_.node_patch[n]]);
+    gathered.row(k) += (total.Flux(n).cast<double>() * node_area[n]).matrix().transpose();
+    waiting.row(k) += (unshot.Flux(n).cast<double>() * node_area[n]).matrix().transpose();
+  }
+  std::vector<std::array<float, 3>> ahead(mesh_.patches.size(), {0, 0, 0});
+  for (int c = 0; c < 3; ++c) {
+    // Radiosity x = waiting + albedo F x, in watts per square metre; x is all that will ever be shot.
+    Eigen::VectorXd radiosity(clusters_);
+    for (int k = 0; k < clusters_; ++k) radiosity[k] = waiting(k, c) / std::max(area_[k], 1e-30);
+    const Eigen::MatrixXd system =
+        Eigen::MatrixXd::Identity(clusters_, clusters_) - albedo_[c].asDiagonal() * form_factor_;
+    const Eigen::VectorXd x = system.partialPivLu().solve(radiosity);
+    if (!x.allFinite()) continue;
+    for (size_t p = 0; p < ahead.size(); ++p) {
+      const int k = int(cluster_[p]);
+      if (!(gathered(k, c) > 0)) continue;
+      const double share = (x[k] - radiosity[k]) * area_[k] / gathered(k, c);
+      if (std::abs(share) < kMostAhead) ahead[p][c] = float(share);
+    }
+  }
+  return ahead;
+}
+
+}  // namespace lobe

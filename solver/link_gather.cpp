@@ -1,0 +1,157 @@
+#include "solver/link_gather.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "brdf/frame.h"
+
+namespace lobe {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+using Clock = std::chrono::steady_clock;
+double Seconds(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
+
+// Which sector of a ring a thinned sweep starts with: rings next to each other start apart.
+int FirstSector(int ring, int thinning) { return thinning == 1 ? 0 : (5 * ring) % thinning; }
+
+}  // namespace
+
+LinkField::LinkField(const Scene& scene, const Mesh& mesh) : scene_(scene), mesh_(mesh) {}
+
+LinkField::LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobes)
+    : scene_(scene), mesh_(mesh), lobes_(&lobes), radiance_(mesh.node_count()) {
+  const float scale = 1.0f / std::sqrt(2.0f * kPi);
+  for (uint32_t n = 0; n < mesh.node_count(); ++n) {
+    const PartDegrees& d = lobes.degrees(n);
+    if (!d.diffuse()) {
+      const auto all = lobes.all(n);
+      const bool dark = std::all_of(all.begin(), all.end(), [](float v) { return v == 0; });
+      radiance_[n] = {0, 0, 0, dark ? 0.0f : 1.0f};
+    } else if (d.base >= 0) {
+      const float* v = lobes.base(n);
+      radiance_[n] = {v[0] * scale, v[1] * scale, v[2] * scale, 0};
+    } else {
+      radiance_[n] = {0, 0, 0, 0};
+    }
+  }
+}
+
+Rgb LinkField::Read(uint32_t node, const Vec3& wo_world, float* basis) const {
+  return lobes_->Radiance(node, Frame(mesh_.node_normal[node]).ToLocal(wo_world), basis);
+}
+
+const Rgb& LinkField::emitted(uint32_t node) const {
+  return scene_.materials[mesh_.patches[mesh_.node_patch[node]].material].emission;
+}
+
+LinkReceiver::LinkReceiver(const Mesh& mesh, const Links& links, const std::vector<MaterialLobes>& materials)
+    : mesh_(mesh), links_(links), materials_(materials), basis_(kMaxBasisSize) {}
+
+LinkDirections& LinkReceiver::Directions(const LinkPattern& pattern) {
+  for (auto& d : directions_) {
+    if (d.pattern().rings == pattern.rings && d.pattern().sectors == pattern.sectors) return d;
+  }
+  return directions_.emplace_back(pattern);
+}
+
+void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ring_links, int ring,
+                            int first, int thinning, const LinkDirections& directions, const Frame& frame,
+                            Received& work) {
+  const int count = int(ring_links.size()) / thinning;
+  float *red = ring_.data(), *green = red + count, *blue = green + count;
+  for (int i = 0; i < count; ++i) {
+    const int sector = first + i * thinning;
+    const uint32_t link = ring_links[sector];
+    Rgb value = Rgb::Zero();
+    if (Links::IsNode(link) && !field.emission()) {
+      const float* radiance = field.radiance(link);
+      if (radiance[3] == 0) {
+        red[i] = radiance[0];
+        green[i] = radiance[1];
+        blue[i] = radiance[2];
+        continue;
+      }
+      value = field.Read(link, -frame.ToWorld(directions.Local(ring, sector)), basis_.data());
+      ++work.lobe_reads;
+    } else if (Links::IsChain(link)) {
+      for (const Links::Hop* hop = links_.chain(link);; ++hop) {
+        if (Links::IsNode(hop->node)) {
+          Rgb radiance = Rgb::Zero();
+          if (field.emission()) {
+            if (hop->emission) radiance = field.emitted(hop->node);
+          } else if (field.diffuse(hop->node)) {
+            const float* r = field.radiance(hop->node);
+            radiance = Rgb(r[0], r[1], r[2]);
+          } else {
+            radiance = field.Read(hop->node, UnpackDirection(hop->direction), basis_.data());
+            ++work.lobe_reads;
+          }
+          for (int c = 0; c < 3; ++c) value[c] += radiance[c] * (float(hop->fresnel[c]) / 65535.0f);
+        }
+        if (hop->last) break;
+      }
+    }
+    red[i] = value[0];
+    green[i] = value[1];
+    blue[i] = value[2];
+  }
+}
+
+Received LinkReceiver::Gather(uint32_t node, const LinkField& field, int thinning, float* out, bool timed) {
+  Received work;
+  const auto start = timed ? Clock::now() : Clock::time_point();
+  const uint32_t patch = mesh_.node_patch[node];
+  const MaterialLobes& material = materials_[mesh_.patches[patch].material];
+  const LinkPattern& pattern = links_.pattern(patch);
+  const std::span<const uint32_t> links = links_.of(node);
+  const Frame frame(mesh_.node_normal[node]);
+  LinkDirections& directions = Directions(pattern);
+  const int count = pattern.sectors / thinning;
+  const float weight = kPi / float(pattern.rings * count);
+  ring_.resize(3 * size_t(pattern.sectors));
+  const bool diffuse = material.diffuse();
+  directions.Start(node, links_.seed());
+  if (!diffuse) moments_.Start(material);
+
+  for (int r = 0; r < pattern.rings; ++r) {
+    const int first = FirstSector(r, thinning);
+    ReadRing(field, links.subspan(size_t(r) * pattern.sectors, pattern.sectors), r, first, thinning,
+             directions, frame, work);
+    Rgb irradiance = Rgb::Zero();
+    for (int c = 0; c < 3; ++c) {
+      float* plane = ring_.data() + c * count;
+      float sum = 0;
+      for (int i = 0; i < count; ++i) {
+        plane[i] *= weight;
+        sum += plane[i];
+      }
+      irradiance[c] = sum;
+    }
+    work.delivered += irradiance;
+    const float cosine = directions.CosTheta(r);
+    if (material.kind() == GlossKind::kMirror) work.mirrored += irradiance * material.MirrorAlbedo(cosine);
+    if (diffuse) continue;
+    work.lobe_writes += count;
+    work.reflected += irradiance * material.Albedo(cosine);
+    const float phi = directions.Phi(r) + 2 * kPi * float(first) / float(pattern.sectors);
+    moments_.AddRing(cosine, ring_.data(), count, phi);
+  }
+  if (diffuse) {
+    work.reflected = material.DiffuseAlbedo() * work.delivered;
+    // Radiance albedo E / pi, as the coefficient of the constant function 1 / sqrt(2 pi).
+    if (material.base.l_max >= 0) {
+      for (int c = 0; c < 3; ++c) out[c] += work.reflected[c] * std::sqrt(2.0f / kPi);
+    }
+  } else {
+    moments_.Finish(out, out + 3 * material.base.count());
+  }
+  work.absorbed = work.delivered - work.reflected - work.mirrored - work.through;
+  if (timed) work.seconds_accumulating = Seconds(start);
+  return work;
+}
+
+}  // namespace lobe

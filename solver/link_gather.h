@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "brdf/frame.h"
+#include "brdf/incident_moments.h"
+#include "brdf/material_lobes.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "solver/links.h"
+#include "solver/node_lobes.h"
+#include "solver/received.h"
+
+namespace lobe {
+
+/// Light that one sweep reads through the links: lobes of nodes, or (emission) what emitters send by way of
+/// mirrors and nothing else carries.
+class LinkField {
+ public:
+  /// Emission of emitters at the ends of chains.
+  LinkField(const Scene& scene, const Mesh& mesh);
+  /// Lobes of nodes, zero where a node sends nothing. References are kept.
+  LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobes);
+
+  bool emission() const { return lobes_ == nullptr; }
+  /// True where all light of the field is the same in every direction: reading is one load.
+  bool diffuse(uint32_t node) const { return radiance_[node][3] == 0; }
+  const float* radiance(uint32_t node) const { return radiance_[node].data(); }
+  /// Of a node that is not diffuse; may be negative. `basis` is scratch.
+  Rgb Read(uint32_t node, const Vec3& wo_world, float* basis) const;
+  /// Emitted by the surface of `node`.
+  const Rgb& emitted(uint32_t node) const;
+
+ private:
+  const Scene& scene_;
+  const Mesh& mesh_;
+  const NodeLobes* lobes_ = nullptr;
+  // Padded to 16 bytes; the fourth float is 0 for a diffuse node and 1 for one with a lobe to read.
+  std::vector<std::array<float, 4>> radiance_;
+};
+
+/// Gathers a field at one node after another, through its links. One per thread; holds scratch.
+class LinkReceiver {
+ public:
+  LinkReceiver(const Mesh& mesh, const Links& links, const std::vector<MaterialLobes>& materials);
+
+  /// Adds the light that leaves `node` for what its links bring to `out` (layout of NodeLobes), and what a
+  /// sheet lets through to `received.through`. `thinning` 1, 2, 4 or 8: uses every so many-th direction of
+  /// each ring.
+  Received Gather(uint32_t node, const LinkField& field, int thinning, float* out, bool timed);
+
+ private:
+  LinkDirections& Directions(const LinkPattern& pattern);
+  void ReadRing(const LinkField& field, std::span<const uint32_t> ring_links, int ring, int first,
+                int thinning, const LinkDirections& directions, const Frame& frame, Received& work);
+
+  const Mesh& mesh_;
+  const Links& links_;
+  const std::vector<MaterialLobes>& materials_;
+  std::vector<LinkDirections> directions_;
+  std::vector<float> ring_, basis_;  // ring_: three planes, one value a sector
+  IncidentMoments moments_;
+};
+
+}  // namespace lobe

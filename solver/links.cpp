@@ -1,0 +1,260 @@
+#include "solver/links.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "brdf/frame.h"
+#include "scene/element_locator.h"
+#include "scene/mirror.h"
+#include "solver/hash.h"
+
+namespace lobe {
+namespace {
+
+constexpr uint32_t kBlockOfNodes = 64;
+
+// An order of the element's three corners, in which each corner comes with the probability of its weight
+// among those not yet taken. The first that is not hidden then has the probability of its renormalised
+// weight, whichever are hidden; and that is known only after all links are traced.
+constexpr uint8_t kOrder[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+uint32_t DrawOrder(const float w[3], float u) {
+  const uint32_t first = uint32_t(u >= w[0]) + uint32_t(u >= w[0] + w[1]);
+  // What is left of u, uniform again over w[first], chooses the second: without a branch, since it is a toss.
+  const float below = first == 0 ? 0.0f : first == 1 ? w[0] : w[0] + w[1];
+  const float a = first == 0 ? w[1] : w[0], b = first == 2 ? w[1] : w[2];
+  return 2 * first + uint32_t((u - below) * (a + b) >= a * w[first]);
+}
+
+}  // namespace
+
+uint32_t PackDirection(const Vec3& direction) {
+  const Vec3 d = direction / direction.cwiseAbs().sum();
+  float x = d.x(), y = d.y();
+  if (d.z() < 0) {
+    x = std::copysign(1 - std::abs(d.y()), d.x());
+    y = std::copysign(1 - std::abs(d.x()), d.y());
+  }
+  const auto quantize = [](float v) { return uint32_t(std::lround((std::clamp(v, -1.0f, 1.0f) + 1) * 32767.5f)); };
+  return quantize(x) | quantize(y) << 16;
+}
+
+Vec3 UnpackDirection(uint32_t packed) {
+  float x = float(packed & 0xffff) / 32767.5f - 1, y = float(packed >> 16) / 32767.5f - 1;
+  const float z = 1 - std::abs(x) - std::abs(y);
+  if (z < 0) {
+    const float t = x;
+    x = std::copysign(1 - std::abs(y), t);
+    y = std::copysign(1 - std::abs(t), y);
+  }
+  return Vec3(x, y, z).normalized();
+}
+
+// What the threads share while tracing, and each one's scratch.
+struct Links::Tracing {
+  const Scene& scene;
+  const Mesh& mesh;
+  const ElementLocator locator;
+  const RayTracer& tracer;
+  const std::vector<MaterialLobes>& materials;
+  const Options& options;
+  std::vector<uint8_t> mirror;  // per material: links go on there
+
+  struct Scratch {
+    std::vector<Ray> rays;
+    std::vector<RayHit> hits;
+    std::vector<Mesh::Location> where;
+    std::vector<LinkDirections> directions;  // one per pattern met
+    uint64_t traced = 0;
+
+    LinkDirections& For(const LinkPattern& pattern) {
+      for (auto& d : directions) {
+        if (d.pattern().rings == pattern.rings && d.pattern().sectors == pattern.sectors) return d;
+      }
+      return directions.emplace_back(pattern);
+    }
+  };
+
+  // 6 * element + order, or a lost link.
+  uint32_t End(const Mesh::Location& where, RandomStream& random) const {
+    if (where.element == kNone) return kBlocked;
+    return 6 * where.element + DrawOrder(where.weight, random.Next());
+  }
+
+  void TraceNode(uint32_t node, const LinkPattern& pattern, Scratch& scratch, std::span<uint32_t> out,
+                 std::vector<Hop>& hops) const {
+    LinkDirections& directions = scratch.For(pattern);
+    directions.Start(node, options.seed);
+    const Frame frame(mesh.node_normal[node]);
+    const Vec3& outward = mesh.node_sample_normal[node];
+    const Vec3 origin = mesh.node_sample_position[node] + outward * tracer.epsilon();
+    scratch.rays.clear();
+    for (int r = 0; r < pattern.rings; ++r) {
+      for (int j = 0; j < pattern.sectors; ++j) {
+        scratch.rays.push_back({origin, 0.0f, frame.ToWorld(directions.Local(r, j)),
+                                std::numeric_limits<float>::infinity()});
+      }
+    }
+    scratch.hits.resize(scratch.rays.size());
+    scratch.where.resize(scratch.rays.size());
+    tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+    locator.Locate(scratch.hits, scratch.where);
+    scratch.traced += scratch.rays.size();
+    RandomStream random(Mix(Mix(options.seed, 0x7a5), node));
+    for (size_t i = 0; i < scratch.rays.size(); ++i) {
+      const RayHit& hit = scratch.hits[i];
+      if (!hit.hit()) {
+        out[i] = kEscaped;
+        continue;
+      }
+      const Mesh::Location& where = scratch.where[i];
+      out[i] = where.element != kNone && mirror[scene.faces[hit.face].material]
+                   ? TraceChain(scratch.rays[i], hit, random, scratch, hops)
+                   : End(where, random);
+    }
+  }
+
+  // Follows mirrors from the first on; returns the link.
+  uint32_t TraceChain(Ray ray, RayHit hit, RandomStream& random, Scratch& scratch,
+                      std::vector<Hop>& hops) const {
+    const uint32_t begin = uint32_t(hops.size());
+    Rgb throughput = Rgb::Constant(1);
+    uint32_t last_mirror = kNone;
+    for (int mirrors = 0;; ++mirrors) {
+      Hop hop{};
+      hop.direction = PackDirection(-ray.direction);
+      for (int c = 0; c < 3; ++c) {
+        hop.fresnel[c] = uint16_t(std::lround(std::clamp(throughput[c], 0.0f, 1.0f) * 65535));
+      }
+      if (!hit.hit()) {
+        hop.node = kEscaped;
+        hop.last = 1;
+        hops.push_back(hop);
+        break;
+      }
+      const Face& face = scene.faces[hit.face];
+      const auto where = locator.Locate(hit);
+      hop.node = End(where, random);
+      // Straight emission travels by shooting, and by way of one planar mirror too.
+      const bool by_shooting =
+          mirrors == 0 || (mirrors == 1 && options.emission_by_shooting && options.emission_by_shooting(last_mirror));
+      hop.emission = !by_shooting && hop.node != kBlocked && scene.materials[face.material].emits();
+      const bool goes_on = hop.node != kBlocked && mirror[face.material];
+      if (!goes_on || mirrors == kMaxMirrors) {
+        hop.cut = goes_on;
+        hop.last = 1;
+        hops.push_back(hop);
+        break;
+      }
+      if (materials[face.material].base.l_max >= 0 || hop.emission) hops.push_back(hop);
+
+      const SurfacePoint at = FindSurfacePoint(scene, mesh, ray, hit, where);
+      const Vec3 wo = -ray.direction;
+      throughput *= materials[face.material].MirrorAlbedo(std::clamp(wo.dot(at.normal), 0.0f, 1.0f));
+      ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),
+             std::numeric_limits<float>::infinity()};
+      hit = tracer.Intersect(ray);
+      ++scratch.traced;
+      last_mirror = face.material == kNone ? kNone : uint32_t(&face - scene.faces.data());
+    }
+    return kChain | begin;
+  }
+};
+
+size_t Links::EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
+                            const Options& options) {
+  size_t links = 0;
+  for (const auto& p : mesh.patches) {
+    const auto& m = materials[p.material];
+    links += size_t(p.node_end - p.node_begin) *
+             LinkPattern::For(options.links, m.diffuse() ? 0 : m.max_degree(), options.per_coefficient).count();
+  }
+  return links * sizeof(uint32_t);
+}
+
+Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
+             const std::vector<MaterialLobes>& materials, const Options& options,
+             const std::function<bool(double)>& stop)
+    : options_(options), node_patch_(mesh.node_patch) {
+  // The orders of corners must fit beside the chain's bit.
+  if (mesh.element_count() >= kChain / 6) throw std::length_error("more than 3.5e8 elements");
+  size_t links = 0;
+  for (const auto& p : mesh.patches) {
+    const auto& m = materials[p.material];
+    const auto pattern =
+        LinkPattern::For(options.links, m.diffuse() ? 0 : m.max_degree(), options.per_coefficient);
+    patches_.push_back({pattern, links, p.node_begin});
+    links += size_t(p.node_end - p.node_begin) * pattern.count();
+  }
+  targets_.resize(links);
+  hidden_.assign(mesh.node_count(), 0);
+
+  Tracing tracing{scene, mesh, ElementLocator(mesh), tracer, materials, options_, {}};
+  for (const auto& m : materials) {
+    tracing.mirror.push_back(options.follow_mirrors && m.kind() == GlossKind::kMirror);
+  }
+  const size_t nodes = mesh.node_count();
+  const uint32_t blocks = uint32_t((nodes + kBlockOfNodes - 1) / kBlockOfNodes);
+  std::vector<std::vector<Hop>> hops(blocks);
+  tbb::enumerable_thread_specific<Tracing::Scratch> scratches;
+  std::atomic<bool> stopped{false};
+  std::atomic<uint32_t> done{0};
+  tbb::parallel_for(0u, blocks, [&](uint32_t block) {
+    if (stopped.load(std::memory_order_relaxed)) return;
+    auto& scratch = scratches.local();
+    const uint32_t end = uint32_t(std::min<size_t>(nodes, size_t(block + 1) * kBlockOfNodes));
+    for (uint32_t node = block * kBlockOfNodes; node < end; ++node) {
+      const Patch& p = patches_[node_patch_[node]];
+      const std::span<uint32_t> out{targets_.data() + p.begin + size_t(node - p.node_begin) * p.pattern.count(),
+                                    size_t(p.pattern.count())};
+      tracing.TraceNode(node, p.pattern, scratch, out, hops[block]);
+      const auto blocked = std::count(out.begin(), out.end(), kBlocked);
+      hidden_[node] = 2 * size_t(blocked) > out.size();
+    }
+    if (stop && stop(double(++done) / blocks)) stopped = true;
+  });
+  for (const auto& scratch : scratches) rays_ += scratch.traced;
+  if ((stopped_ = stopped)) return;
+
+  // Chains were numbered block by block.
+  std::vector<uint32_t> first_hop(blocks);
+  for (uint32_t b = 0; b < blocks; ++b) {
+    first_hop[b] = uint32_t(hops_.size());
+    hops_.insert(hops_.end(), hops[b].begin(), hops[b].end());
+    hops[b] = {};
+  }
+  if (hops_.size() >= (kBlocked & ~kChain)) throw std::length_error("more than 2^31 hops of links by mirrors");
+  const auto resolve = [&](uint32_t& end) {
+    if (!IsNode(end)) return;
+    const auto& corners = mesh.elements[end / 6];
+    const auto& order = kOrder[end % 6];
+    for (const uint8_t k : order) {
+      if (hidden_[corners[k]]) continue;
+      end = corners[k];
+      return;
+    }
+    end = kBlocked;
+  };
+  tbb::parallel_for(0u, blocks, [&](uint32_t block) {
+    const uint32_t end = uint32_t(std::min<size_t>(nodes, size_t(block + 1) * kBlockOfNodes));
+    for (uint32_t node = block * kBlockOfNodes; node < end; ++node) {
+      const Patch& p = patches_[node_patch_[node]];
+      uint32_t* link = targets_.data() + p.begin + size_t(node - p.node_begin) * p.pattern.count();
+      for (int i = 0; i < p.pattern.count(); ++i) {
+        if (IsChain(link[i])) {
+          link[i] += first_hop[block];
+        } else {
+          resolve(link[i]);
+        }
+      }
+    }
+  });
+  tbb::parallel_for(size_t(0), hops_.size(), [&](size_t i) { resolve(hops_[i].node); });
+}
+
+}  // namespace lobe

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "brdf/material_lobes.h"
+#include "scene/mesh.h"
+#include "scene/ray_tracer.h"
+#include "scene/scene.h"
+#include "solver/link_pattern.h"
+
+namespace lobe {
+
+/// What each node sees: for every direction of its pattern, the node whose light arrives from there. Traced
+/// once and used in every sweep (Buckalew and Fussell, "Illumination networks", SIGGRAPH 1989, link parallel
+/// rays in the same spirit).
+///
+/// A link takes 4 bytes: it ends in *one* node of the element it hits, chosen with the probabilities of their
+/// hat functions, so that light read through it is on average the interpolated light at the hit. What this
+/// adds in noise is small against that of sampling the hemisphere (docs/validation.md#links).
+///
+/// Links follow ideal mirrors: a link that meets one is a chain of hops.
+class Links {
+ public:
+  /// Values of a link that ends in no node.
+  static constexpr uint32_t kEscaped = 0xffffffffu;  ///< leaves the scene
+  static constexpr uint32_t kBlocked = 0xfffffffeu;  ///< black back, or a side without nodes
+  /// This bit marks the index of a chain's first hop instead of a node.
+  static constexpr uint32_t kChain = 0x80000000u;
+  static bool IsNode(uint32_t link) { return link < kChain; }
+  static bool IsLost(uint32_t link) { return link >= kBlocked; }
+  static bool IsChain(uint32_t link) { return link >= kChain && link < kBlocked; }
+
+  /// One surface on a link's way by mirrors. What arrives through the link is the sum over its hops of
+  /// throughput x radiance of `node` towards `wo`.
+  struct Hop {
+    uint32_t node;         ///< or kEscaped, kBlocked
+    uint32_t direction;    ///< packed wo, from this surface back along the way (UnpackDirection)
+    uint16_t fresnel[3];   ///< what the mirrors so far pass on, in 1 / 65535
+    uint16_t last : 1;     ///< ends the chain
+    uint16_t emission : 1; ///< the surface's own emission is read too: nothing else carries it here
+    uint16_t cut : 1;      ///< a mirror beyond kMaxMirrors: what it throws is lost
+  };
+  static_assert(sizeof(Hop) == 16);
+
+  /// Mirrors a link follows at most. A room of mirrors of reflectance 0.9 loses 0.9^16 = 19 % of what keeps
+  /// between them; the ledger says how much it was.
+  static constexpr int kMaxMirrors = 16;
+
+  struct Options {
+    int links = 256;          ///< per diffuse node; glossy ones take at least per_coefficient x coefficients
+    int per_coefficient = 8;
+    bool follow_mirrors = true;
+    uint64_t seed = 1;
+    /// Does shooting bring an emitter's light by way of this mirror face? Then links leave it out.
+    std::function<bool(uint32_t face)> emission_by_shooting = {};
+  };
+
+  /// Traces all links. `stop` is asked from time to time; if it says so, the object is useless (stopped()).
+  Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
+        const std::vector<MaterialLobes>& materials, const Options& options,
+        const std::function<bool(double fraction)>& stop = {});
+
+  bool stopped() const { return stopped_; }
+  /// Nodes more than half of whose links are blocked: they are inside something. Have no weight.
+  const std::vector<uint8_t>& hidden() const { return hidden_; }
+  const LinkPattern& pattern(uint32_t patch) const { return patches_[patch].pattern; }
+  uint64_t seed() const { return options_.seed; }
+  std::span<const uint32_t> of(uint32_t node) const {
+    const Patch& p = patches_[node_patch_[node]];
+    return {targets_.data() + p.begin + size_t(node - p.node_begin) * p.pattern.count(),
+            size_t(p.pattern.count())};
+  }
+  const Hop* chain(uint32_t link) const { return hops_.data() + (link & ~kChain); }
+  uint64_t rays() const { return rays_; }
+  size_t count() const { return targets_.size(); }
+  size_t bytes() const { return targets_.size() * sizeof(uint32_t) + hops_.size() * sizeof(Hop); }
+  /// Bytes that links of `mesh` would take, chains aside.
+  static size_t EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
+                              const Options& options);
+
+ private:
+  struct Patch {
+    LinkPattern pattern;
+    size_t begin;
+    uint32_t node_begin;
+  };
+  struct Tracing;
+
+  void Resolve(const Mesh& mesh);
+
+  Options options_;
+  bool stopped_ = false;
+  std::vector<Patch> patches_;
+  std::span<const uint32_t> node_patch_;
+  std::vector<uint32_t> targets_;
+  std::vector<Hop> hops_;
+  std::vector<uint8_t> hidden_;
+  uint64_t rays_ = 0;
+};
+
+/// Unit vector in 32 bits, octahedral (Cigolle et al., JCGT 3(2), 2014): off by at most 4e-5 radians.
+uint32_t PackDirection(const Vec3& direction);
+Vec3 UnpackDirection(uint32_t packed);
+
+}  // namespace lobe
