@@ -383,6 +383,60 @@ void Residual() {
                 {kBoxes[0]});
 }
 
+double Median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+// Moments of arriving light, one thread: contributions one by one against rings of them.
+void Accumulation() {
+  constexpr int kCount = 64, kRings = 24, kRepeats = 400;
+  std::printf(
+      "| l_max | Add, ns a contribution | AddRing of %d, ns a contribution | ratio |\n|---|---|---|---|\n",
+      kCount);
+  TableCache cache;
+  for (const int l_max : {8, 12, 20}) {
+    LobeOptions options;
+    options.force_l_max = l_max;
+    const MaterialLobes material(Metal(0.4f), options, cache);
+    std::vector<float> planes(3 * kCount), out(size_t(3) * kMaxBasisSize);
+    for (size_t i = 0; i < planes.size(); ++i) planes[i] = float(1 + std::sin(2.3 * double(i)));
+    std::vector<Vec3> directions;
+    for (int ring = 0; ring < kRings; ++ring) {
+      const double c = (ring + 0.5) / kRings, s = std::sqrt(1 - c * c);
+      for (int j = 0; j < kCount; ++j) {
+        const double phi = 0.1 * ring + 2 * kPi * j / kCount;
+        directions.emplace_back(float(s * std::cos(phi)), float(s * std::sin(phi)), float(c));
+      }
+    }
+    IncidentMoments moments;
+    const auto time = [&](auto&& add_ring) {
+      moments.Start(material);
+      const double start = CpuSeconds();
+      for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        for (int ring = 0; ring < kRings; ++ring) add_ring(ring);
+      }
+      const double seconds = CpuSeconds() - start;
+      moments.Finish(nullptr, out.data());
+      return seconds / (double(kRepeats) * kRings * kCount) * 1e9;
+    };
+    std::vector<double> single, whole, ratio;
+    for (int run = 0; run < 5; ++run) {
+      single.push_back(time([&](int ring) {
+        for (int j = 0; j < kCount; ++j) {
+          moments.Add(directions[ring * kCount + j],
+                      Rgb(planes[j], planes[kCount + j], planes[2 * kCount + j]));
+        }
+      }));
+      whole.push_back(time([&](int ring) {
+        moments.AddRing(directions[ring * kCount].z(), planes.data(), kCount, 0.1f * float(ring));
+      }));
+      ratio.push_back(single.back() / whole.back());
+    }
+    std::printf("| %d | %.0f | %.1f | %.0f |\n", l_max, Median(single), Median(whole), Median(ratio));
+  }
+}
+
 // One thread: gathering emission and the first reflected step, against Embree alone over the very same rays.
 void Split() {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -460,6 +514,7 @@ const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"ba
                                                                             {"border", Border},
                                                                             {"lobe-error", LobeError},
                                                                             {"residual", Residual},
+                                                                            {"accumulation", Accumulation},
                                                                             {"split", Split}};
 
 }  // namespace

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "brdf/material_lobes.h"
+#include "brdf/ring_transform.h"
 
 namespace lobe {
 
@@ -22,10 +25,16 @@ class IncidentMoments {
   /// `irradiance` (W m^-2, cosine included) arriving from `wi_local`, unit, above the horizon.
   void Add(const Vec3& wi_local, const Rgb& irradiance);
 
+  /// A ring of arriving light at once: irradiance from `count` azimuths phi0 + 2 pi j / count at one polar
+  /// angle, as three planes (red, green, blue) of `count`. Equals `count` calls of Add to rounding, at a
+  /// fraction of their cost (docs/validation.md#accumulation). The first ring of each count builds a table.
+  void AddRing(float cos_theta_i, const float* irradiance_planes, int count, float phi0);
+
   /// Adds the outgoing lobes: base[c * base.count() + k], gloss[c * gloss.count() + k].
   void Finish(float* base, float* gloss);
 
  private:
+  void AddSpectrum(float cos_theta_i, const Rgb& irradiance);
   void FinishPart(const PartLobes& part, const Rgb& rest, float* out);
 
   const MaterialLobes* material_ = nullptr;
@@ -33,7 +42,10 @@ class IncidentMoments {
   int first_bin_ = 0, last_bin_ = -1;  // those touched since Start
   std::vector<float> moments_;         // [bin][channel][cos 0..l_max, sin 0..l_max]
   Rgb rest_base_, rest_gloss_;         // irradiance x what the spline's flux lacks
-  std::vector<float> azimuth_, product_;
+  std::vector<float> azimuth_;         // cos m phi, then sin m phi
+  std::vector<float> spectrum_;        // arriving light, [channel][cos, sin]
+  std::vector<float> product_, folded_;
+  std::map<std::pair<int, int>, RingTransform> rings_;  // by count and degree
 };
 
 }  // namespace lobe
