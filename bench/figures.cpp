@@ -37,6 +37,11 @@ double CpuSeconds() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
+double Median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
 ScalarTable GgxTable(double roughness, int l_max) {
   const double a = roughness * roughness;
   return ScalarTable::Build(
@@ -204,6 +209,39 @@ void Knots() {
       }
     }
   }
+}
+
+// Lobes of a material from nothing, on one thread.
+void Tables() {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  MetallicRoughness plastic = Metal(0.4f);
+  plastic.metallic = 0;
+  const Reflectance models[] = {Metal(1.0f),
+                                Metal(0.4f),
+                                Metal(0.2f),
+                                plastic,
+                                Phong{Rgb::Constant(0.8f), 20},
+                                Ward{Rgb::Constant(0.8f), 0.2f}};
+  std::printf("| model | l_max 8, ms | l_max 12, ms | l_max 20, ms |\n|---|---|---|---|\n");
+  const auto row = [](const std::string& name, const std::vector<Reflectance>& materials) {
+    std::printf("| %s |", name.c_str());
+    for (const int l_max : {8, 12, 20}) {
+      std::vector<double> milliseconds;
+      for (int run = 0; run < 5; ++run) {
+        const double start = CpuSeconds();
+        TableCache cache;
+        for (const Reflectance& r : materials) MaterialLobes(r, LobeOptions{.l_max = l_max}, cache);
+        milliseconds.push_back(1e3 * (CpuSeconds() - start));
+      }
+      std::printf(" %.1f |", Median(milliseconds));
+    }
+    std::printf("\n");
+  };
+  for (const Reflectance& model : models) row(Describe(model), {model});
+  std::vector<Reflectance> box;
+  for (const auto& m : ReadGltfScene(kTests + "/scenes/cornell_glossy.glb").materials)
+    box.push_back(m.reflectance);
+  row("all of cornell_glossy", box);
 }
 
 // --- solver ------------------------------------------------------------------------------------------
@@ -383,11 +421,6 @@ void Residual() {
                 {kBoxes[0]});
 }
 
-double Median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
-}
-
 // Moments of arriving light, one thread: contributions one by one against rings of them.
 void Accumulation() {
   constexpr int kCount = 64, kRings = 24, kRepeats = 400;
@@ -505,6 +538,7 @@ const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"ba
                                                                             {"degree", Degree},
                                                                             {"flux", Flux},
                                                                             {"knots", Knots},
+                                                                            {"tables", Tables},
                                                                             {"furnaces", Furnaces},
                                                                             {"form-factors", FormFactors},
                                                                             {"cornell", Cornell},

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "sh/quadrature.h"
-
 namespace lobe {
 
-void HalfVectorRule::ForEach(double cos_theta_i,
-                             const std::function<void(const Vec3d& wo, double weight)>& visit) const {
+OutgoingPoints HalfVectorRule::Points(double cos_theta_i) const {
+  OutgoingPoints out;
+  for (auto* list : {&out.x, &out.y, &out.z, &out.weight})
+    list->reserve(azimuth.nodes.size() * polar.nodes.size());
   // At grazing incidence proper the interval below degenerates; this near, nothing is lost in double.
   const double ci = std::clamp(cos_theta_i, 1e-7, 1.0);
   const double si = std::sqrt(1.0 - ci * ci);
@@ -18,11 +18,10 @@ void HalfVectorRule::ForEach(double cos_theta_i,
   const double half_turn = 0.5 * std::numbers::pi;
   const double swing = std::clamp(ci / std::max(si, 1e-9), 1e-6, 2.0);
   const double y_max = std::asinh(half_turn / swing);
-  const GaussLegendre azimuth(azimuth_points, -y_max, y_max);
-  const GaussLegendre polar(polar_points, 0.0, 1.0);
-  for (int i = 0; i < azimuth_points; ++i) {
-    const double psi = swing * std::sinh(azimuth.nodes[i]);
-    const double azimuth_weight = 2.0 * azimuth.weights[i] * swing * std::cosh(azimuth.nodes[i]);
+  for (size_t i = 0; i < azimuth.nodes.size(); ++i) {
+    const double y = y_max * azimuth.nodes[i];
+    const double psi = swing * std::sinh(y);
+    const double azimuth_weight = 2.0 * azimuth.weights[i] * y_max * swing * std::cosh(y);
     const double cos_phi = std::sin(psi), sin_phi = std::cos(psi);
 
     // wo.z = 2 (wi.h) h.z - wi.z = R cos(2 theta_h - delta), tan delta = tan theta_i cos phi_h: above the
@@ -30,22 +29,24 @@ void HalfVectorRule::ForEach(double cos_theta_i,
     const double delta = std::atan2(si * cos_phi, ci);
     const double theta_max = 0.25 * std::numbers::pi + 0.5 * delta;
     const double x_max = std::asinh(theta_max / width);
-    for (int j = 0; j < polar_points; ++j) {
+    for (size_t j = 0; j < polar.nodes.size(); ++j) {
       // theta_h = width sinh(x): even steps across the peak, even ratios along the tail. Towards wo's
       // horizon, where at grazing incidence masking varies within cos_o ~ cos_i, steps shrink as a cube.
       const double v = 1.0 - polar.nodes[j];
-      const double x = x_max * (1.0 - v * v * v);
-      const double theta = width * std::sinh(x);
+      const double e = std::exp(x_max * (1.0 - v * v * v));
+      const double theta = 0.5 * width * (e - 1.0 / e), theta_by_x = 0.5 * width * (e + 1.0 / e);
       const double sin_h = std::sin(theta), cos_h = std::cos(theta);
       const double wi_h = si * sin_h * cos_phi + ci * cos_h;
-      Vec3d wo(2.0 * wi_h * sin_h * cos_phi - si, 2.0 * wi_h * sin_h * sin_phi, 2.0 * wi_h * cos_h - ci);
-      if (wo.z() <= 0.0 || wi_h <= 0.0) continue;  // rounding at the end of the interval
-      wo.normalize();
-      const double weight = azimuth_weight * polar.weights[j] * 3.0 * v * v * x_max * width * std::cosh(x) *
-                            sin_h * 4.0 * wi_h;  // d omega_o = 4 (wi.h) d omega_h
-      visit(wo, weight);
+      const double wo_z = 2.0 * wi_h * cos_h - ci;
+      if (wo_z <= 0.0 || wi_h <= 0.0) continue;  // rounding at the end of the interval
+      out.x.push_back(2.0 * wi_h * sin_h * cos_phi - si);
+      out.y.push_back(2.0 * wi_h * sin_h * sin_phi);
+      out.z.push_back(wo_z);
+      out.weight.push_back(azimuth_weight * polar.weights[j] * 3.0 * v * v * x_max * theta_by_x * sin_h *
+                           4.0 * wi_h);  // d omega_o = 4 (wi.h) d omega_h
     }
   }
+  return out;
 }
 
 }  // namespace lobe

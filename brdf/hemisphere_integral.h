@@ -1,10 +1,16 @@
 #pragma once
 
-#include <functional>
+#include <vector>
 
-#include "sh/vector.h"
+#include "sh/quadrature.h"
 
 namespace lobe {
+
+/// Points of an integral over outgoing directions: unit vectors (x, y, z), z > 0, and weights in steradians.
+struct OutgoingPoints {
+  std::vector<double> x, y, z, weight;
+  int size() const { return int(weight.size()); }
+};
 
 /// Integration over outgoing directions in half-vector coordinates, where glossy lobes are smooth
 /// whatever their sharpness. For incident direction wi = (sin, 0, cos) and each azimuth of the half
@@ -14,12 +20,12 @@ struct HalfVectorRule {
   /// Width of the distribution of half vectors, as GGX's alpha; points crowd within a few of it.
   double width = 1;
   /// Defaults give the albedo of GGX to 1e-8 for every roughness and angle (docs/validation.md#flux).
-  int polar_points = 40;
-  int azimuth_points = 64;  ///< over half a turn: the integrand is even in azimuth
+  GaussLegendre polar{40, 0.0, 1.0};
+  GaussLegendre azimuth{64, -1.0, 1.0};  ///< over half a turn: the integrand is even in azimuth
 
-  /// Calls visit(wo, weight) for points covering phi_o in both halves by symmetry: integral of g(wo)
-  /// d omega_o = sum weight g(wo) for g even in y. No cosine in the weight.
-  void ForEach(double cos_theta_i, const std::function<void(const Vec3d& wo, double weight)>& visit) const;
+  /// Points covering phi_o in both halves by symmetry: integral of g(wo) d omega_o = sum weight g(wo) for g
+  /// even in y. No cosine in the weight.
+  OutgoingPoints Points(double cos_theta_i) const;
 };
 
 }  // namespace lobe

@@ -7,60 +7,135 @@
 
 #include <tbb/parallel_for.h>
 
-#include "sh/zernike.h"
+#include "sh/zernike_sums.h"
 
 namespace lobe {
+namespace {
+
+double SchlickRise(const Vec3d& wi, const Vec3d& wo) {
+  const double x = 1.0 - std::sqrt(std::max(0.0, 0.5 * (1.0 + wi.dot(wo))));
+  return x * x * x * x * x;
+}
+
+// Angles at which the albedo is integrated; the fine grid comes from these (docs/validation.md#flux).
+//
+// The albedo is smooth in cos theta but for two things at grazing: a layer as thin as the lobe is wide, and a
+// term c log c, c = cos theta. In y = sqrt(asinh(c / width)) the layer is as wide as the rest and the term is
+// y^2 log y: the polynomial through Chebyshev points in y, which crowd at the ends, converges fast.
+class AlbedoAngles {
+ public:
+  static constexpr int kCount = 48;
+  explicit AlbedoAngles(double width) : width_(width), y_max_(Parameter(1.0)) {}
+
+  double Cosine(int k) const {
+    const double y = Node(k);
+    return std::min(1.0, width_ * std::sinh(y * y));
+  }
+  // From values at the angles to the fine grid: barycentric formula (Berrut and Trefethen, SIAM Review 46(3),
+  // 2004, eq. 4.2 and 5.3).
+  Eigen::MatrixXd ToFineGrid() const {
+    Eigen::MatrixXd out(ScalarTable::kFine + 1, kCount);
+    for (int i = 0; i <= ScalarTable::kFine; ++i) {
+      const double y = Parameter(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
+      for (int k = 0; k < kCount; ++k) {
+        const double weight = (k % 2 == 0 ? 1 : -1) * std::sin(Angle(k)), distance = y - Node(k);
+        out(i, k) = weight / (distance != 0 ? distance : 1e-200);  // at a node that node alone
+      }
+      out.row(i) /= out.row(i).sum();
+    }
+    return out;
+  }
+
+ private:
+  double Parameter(double cosine) const { return std::sqrt(std::asinh(cosine / width_)); }
+  static double Angle(int k) { return std::numbers::pi * (k + 0.5) / kCount; }
+  double Node(int k) const { return y_max_ * 0.5 * (1.0 + std::cos(Angle(k))); }
+
+  double width_, y_max_;
+};
+
+// Tables of f, and of f (1 - V.H)^5 if there are two of them. One pass over the points serves both.
+void BuildParts(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots,
+                const std::vector<ScalarTable*>& tables, Eigen::VectorXd* inner) {
+  if (l_max < 0) throw std::invalid_argument("ScalarTable: l_max is negative");
+  if (knots <= 0) knots = ScalarTable::DefaultKnots(l_max);
+  const int parts = int(tables.size());
+  const IncidenceSpline spline(knots);
+  for (ScalarTable* table : tables) {
+    table->l_max = l_max;
+    table->knots = knots;
+    table->zernike.resize(ScalarTable::RowCount(l_max), knots);
+    table->norm2.resize(knots);
+  }
+  if (inner) inner->resize(knots);
+  const AlbedoAngles albedo_angles(rule.width);
+  Eigen::MatrixXd albedo(AlbedoAngles::kCount, parts);
+
+  tbb::parallel_for(0, knots + AlbedoAngles::kCount, [&](int angle) {
+    const bool at_knot = angle < knots;
+    const double cosine =
+        std::clamp(at_knot ? spline.KnotCosine(angle) : albedo_angles.Cosine(angle - knots), 1e-7, 1.0);
+    const Vec3d wi(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
+    const OutgoingPoints points = rule.Points(cosine);
+    Eigen::MatrixXd value(points.size(), parts);
+    for (int i = 0; i < points.size(); ++i) {
+      const Vec3d wo(points.x[i], points.y[i], points.z[i]);
+      value(i, 0) = f(wi, wo);
+      if (parts > 1) value(i, 1) = value(i, 0) * SchlickRise(wi, wo);
+    }
+    const auto measure = Eigen::Map<const Eigen::ArrayXd>(points.z.data(), points.size()) *
+                         Eigen::Map<const Eigen::ArrayXd>(points.weight.data(), points.size());
+    const Eigen::MatrixXd flux = value.array().colwise() * measure;
+    if (!at_knot) {
+      albedo.row(angle - knots) = flux.colwise().sum();
+      return;
+    }
+    ZernikeSums sums(l_max, parts);
+    sums.Add(points.x.data(), points.y.data(), flux.data(), points.size());
+    for (int part = 0; part < parts; ++part) {
+      ScalarTable& table = *tables[part];
+      table.norm2[angle] = flux.col(part).dot(value.col(part));
+      for (int n = 0; n <= l_max; ++n) {
+        for (int m = n % 2; m <= n; m += 2) {
+          table.zernike(ScalarTable::RowIndex(n, m), angle) = sums.Sum(n, m, part);
+        }
+      }
+    }
+    if (inner) (*inner)[angle] = flux.col(0).dot(value.col(1));
+  });
+  const Eigen::MatrixXd fine = albedo_angles.ToFineGrid() * albedo;
+  for (int part = 0; part < parts; ++part) tables[part]->albedo = fine.col(part);
+}
+
+}  // namespace
 
 int ScalarTable::RowIndex(int n, int m) { return (n == 0 ? 0 : RowCount(n - 1)) + m / 2; }
 
 ScalarTable ScalarTable::Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots) {
-  if (l_max < 0) throw std::invalid_argument("ScalarTable: l_max is negative");
   ScalarTable table;
-  table.l_max = l_max;
-  table.knots = knots > 0 ? knots : DefaultKnots(l_max);
-  table.zernike = Eigen::MatrixXd::Zero(RowCount(l_max), table.knots);
-  table.norm2 = Eigen::VectorXd::Zero(table.knots);
-  table.albedo = Eigen::VectorXd::Zero(kFine + 1);
-  const IncidenceSpline spline(table.knots);
-  const auto incident = [](double c) { return Vec3d(std::sqrt(1.0 - c * c), 0.0, c); };
-
-  tbb::parallel_for(0, table.knots, [&](int knot) {
-    const double cosine = std::clamp(spline.KnotCosine(knot), 1e-7, 1.0);
-    const Vec3d wi = incident(cosine);
-    std::vector<double> radial(l_max / 2 + 1), cos_m(l_max + 1);
-    auto column = table.zernike.col(knot);
-    rule.ForEach(cosine, [&](const Vec3d& wo, double weight) {
-      const double value = f(wi, wo);
-      const double flux = weight * wo.z() * value;
-      if (flux == 0.0) return;
-      table.norm2[knot] += flux * value;
-      const double rho = std::hypot(wo.x(), wo.y());
-      const double cos_phi = rho > 0 ? wo.x() / rho : 1.0;
-      cos_m[0] = 1;
-      if (l_max >= 1) cos_m[1] = cos_phi;
-      for (int m = 2; m <= l_max; ++m) cos_m[m] = 2.0 * cos_phi * cos_m[m - 1] - cos_m[m - 2];
-      for (int m = 0; m <= l_max; ++m) {
-        ZernikeRadial(m, l_max, rho, radial.data());
-        for (int n = m; n <= l_max; n += 2) {
-          column[RowIndex(n, m)] += flux * cos_m[m] * radial[(n - m) / 2];
-        }
-      }
-    });
-  });
-  tbb::parallel_for(0, kFine + 1, [&](int i) {
-    const double cosine = std::clamp(IncidenceSpline::CosineOfParameter(double(i) / kFine), 1e-7, 1.0);
-    const Vec3d wi = incident(cosine);
-    double sum = 0;
-    rule.ForEach(cosine, [&](const Vec3d& wo, double weight) { sum += weight * wo.z() * f(wi, wo); });
-    table.albedo[i] = sum;
-  });
+  BuildParts(f, l_max, rule, knots, {&table}, nullptr);
   return table;
+}
+
+SchlickTables SchlickTables::Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots) {
+  SchlickTables out;
+  BuildParts(f, l_max, rule, knots, {&out.plain, &out.rising}, &out.inner);
+  return out;
+}
+
+ScalarTable SchlickTables::Mix(double a, double b) const {
+  ScalarTable out;
+  out.l_max = plain.l_max;
+  out.knots = plain.knots;
+  out.zernike = a * plain.zernike + b * rising.zernike;
+  out.albedo = a * plain.albedo + b * rising.albedo;
+  out.norm2 = a * a * plain.norm2 + b * b * rising.norm2 + 2.0 * a * b * inner;
+  return out;
 }
 
 double ScalarTable::Error(int l) const { return ErrorWithin(*this, l); }
 
 double ScalarTable::ErrorWithin(const ScalarTable& whole, int l) const {
-  if (norm2.size() != knots) throw std::logic_error("ScalarTable::Error: a combined table has no norms");
   const int rows = RowCount(std::min(l, l_max));
   const IncidenceSpline spline(knots);
   double sum = 0, weights = 0;
@@ -76,22 +151,6 @@ double ScalarTable::ErrorWithin(const ScalarTable& whole, int l) const {
     weights += w;
   }
   return weights > 0 ? sum / weights : 0.0;
-}
-
-ScalarTable ScalarTable::Combine(double a, const ScalarTable& f, double b, const ScalarTable& g,
-                                 const Eigen::VectorXd& sum_norm2) {
-  if (f.knots != g.knots) throw std::invalid_argument("ScalarTable::Combine: knots differ");
-  ScalarTable out;
-  out.l_max = std::min(f.l_max, g.l_max);
-  out.knots = f.knots;
-  const int rows = RowCount(out.l_max);
-  out.zernike = a * f.zernike.topRows(rows) + b * g.zernike.topRows(rows);
-  out.albedo = a * f.albedo + b * g.albedo;
-  if (sum_norm2.size() > 0) {
-    const Eigen::VectorXd inner_twice = sum_norm2 - f.norm2 - g.norm2;
-    out.norm2 = a * a * f.norm2 + b * b * g.norm2 + a * b * inner_twice;
-  }
-  return out;
 }
 
 }  // namespace lobe

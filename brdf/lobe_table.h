@@ -62,11 +62,17 @@ struct ScalarTable {
   static ScalarTable Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots = 0);
   /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
   static int DefaultKnots(int l_max) { return 16 + l_max; }
+};
 
-  /// a f + b g, over equal knots; the lower degree wins. `sum_norm2`, the norm2 of f + g, gives the result
-  /// its norms (by polarisation) and so its Error; without it norm2 is empty.
-  static ScalarTable Combine(double a, const ScalarTable& f, double b, const ScalarTable& g,
-                             const Eigen::VectorXd& sum_norm2 = {});
+/// What Schlick's Fresnel term a + b (1 - V.H)^5 makes of a reflectance f: both parts, over the same points.
+struct SchlickTables {
+  ScalarTable plain, rising;  ///< f and f (1 - V.H)^5
+  Eigen::VectorXd inner;      ///< their cos-weighted inner product at the knots
+
+  /// As ScalarTable::Build.
+  static SchlickTables Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots = 0);
+  /// The table of f (a + b (1 - V.H)^5).
+  ScalarTable Mix(double a, double b) const;
 };
 
 }  // namespace lobe

@@ -16,12 +16,6 @@ namespace {
 constexpr int kBaseDegreeCap = 8;
 constexpr double kBaseError = 0.01;
 
-double Pow5(double x) { return x * x * x * x * x; }
-
-double HalfCosine(const Vec3d& wi, const Vec3d& wo) {
-  return std::sqrt(std::max(0.0, 0.5 * (1.0 + wi.dot(wo))));
-}
-
 std::string Key(const char* model, double parameter, int l_max, int knots) {
   std::ostringstream key;
   key.precision(9);
@@ -113,11 +107,11 @@ const char* Name(GlossKind kind) {
   return "";
 }
 
-std::shared_ptr<const ScalarTable> TableCache::Get(const std::string& key,
-                                                   const std::function<ScalarTable()>& build) {
-  auto& table = tables_[key];
-  if (!table) table = std::make_shared<ScalarTable>(build());
-  return table;
+std::shared_ptr<const SchlickTables> TableCache::Get(const std::string& key,
+                                                     const std::function<SchlickTables()>& build) {
+  auto& tables = tables_[key];
+  if (!tables) tables = std::make_shared<SchlickTables>(build());
+  return tables;
 }
 
 Rgb PartLobes::Albedo(float cos_theta_i) const {
@@ -135,19 +129,20 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   const int knots = ScalarTable::DefaultKnots(std::max(cap, kBaseDegreeCap));
   spline_ = std::make_shared<IncidenceSpline>(knots);
 
-  // The gloss from one table, each channel times a colour.
+  // The gloss f (plain + rising (1 - V.H)^5). Phong and Ward do not rise.
   const auto gloss_from = [&](const char* model, double parameter, double width, const ScalarBrdf& f,
-                              const Rgb& colour) {
-    if ((colour <= 0).all()) return;
-    const auto table = cache.Get(Key(model, parameter, cap, knots), [&] {
-      return ScalarTable::Build(f, cap, HalfVectorRule{.width = width}, knots);
+                              const Rgb& plain, const Rgb& rising) {
+    if ((plain <= 0).all() && (rising <= 0).all()) return;
+    const auto tables = cache.Get(Key(model, parameter, cap, knots), [&] {
+      return SchlickTables::Build(f, cap, HalfVectorRule{.width = width}, knots);
     });
-    gloss.l_max = DegreeWithin(*table, options);
-    gloss.error = table->Error(gloss.l_max);
-    for (int c = 0; c < 3; ++c) {
-      SetChannel(gloss, c, *spline_, ScalarTable::Combine(colour[c], *table, 0.0, *table));
-    }
-    kind_ = gloss.error <= options.error || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
+    // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
+    // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
+    gloss.l_max = DegreeWithin(tables->plain, options);
+    const bool within = tables->plain.Error(gloss.l_max) <= options.error || options.force_l_max >= 0;
+    kind_ = within ? GlossKind::kLobe : GlossKind::kSharp;
+    gloss.error = tables->Mix(plain.mean(), rising.mean()).Error(gloss.l_max);
+    for (int c = 0; c < 3; ++c) SetChannel(gloss, c, *spline_, tables->Mix(plain[c], rising[c]));
   };
 
   if (const auto* lambert = std::get_if<Lambert>(&reflectance)) {
@@ -157,13 +152,13 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
     gloss_from(
         "phong", phong->exponent, std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
         [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
-        phong->albedo);
+        phong->albedo, Rgb::Zero());
   } else if (const auto* ward = std::get_if<Ward>(&reflectance)) {
     const Reflectance white = Ward{Rgb::Constant(1), ward->alpha};
     gloss_from(
         "ward", ward->alpha, std::min(1.0f, ward->alpha),
         [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
-        ward->albedo);
+        ward->albedo, Rgb::Zero());
   } else if (const auto* gltf = std::get_if<MetallicRoughness>(&reflectance)) {
     const Rgb f0 = gltf->F0();
     const float f90 = gltf->F90();
@@ -177,28 +172,20 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
     if ((slope.abs() < 1e-7f).all()) {
       if ((diffuse > 0).any() || !coated) diffuse_albedo_ = LambertPart(base, constant);
     } else if ((diffuse > 0).any()) {
-      const HalfVectorRule rule{.width = 1.0};
-      const auto fresnel = cache.Get(Key("fresnel", 0, kBaseDegreeCap, knots), [&] {
-        return ScalarTable::Build(
-            [](const Vec3d& wi, const Vec3d& wo) {
-              return Pow5(1.0 - HalfCosine(wi, wo)) / std::numbers::pi;
-            },
-            kBaseDegreeCap, rule, knots);
-      });
-      const auto one = cache.Get(Key("lambert", 0, kBaseDegreeCap, knots), [&] {
-        return ScalarTable::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
-                                  kBaseDegreeCap, rule, knots);
+      const auto white = cache.Get(Key("lambert", 0, kBaseDegreeCap, knots), [&] {
+        return SchlickTables::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
+                                    kBaseDegreeCap, HalfVectorRule{.width = 1.0}, knots);
       });
       // Only the Fresnel part is cut; the steepest channel decides.
       int steepest = 0;
       (slope / constant.max(1e-6f)).maxCoeff(&steepest);
-      const auto whole = ScalarTable::Combine(constant[steepest], *one, -slope[steepest], *fresnel);
-      const auto error = [&](int l) { return slope[steepest] * fresnel->ErrorWithin(whole, l); };
+      const auto whole = white->Mix(constant[steepest], -slope[steepest]);
+      const auto error = [&](int l) { return slope[steepest] * white->rising.ErrorWithin(whole, l); };
       base.l_max = 0;
       while (base.l_max < base_cap && error(base.l_max) > kBaseError) ++base.l_max;
       base.error = error(base.l_max);
       for (int c = 0; c < 3; ++c) {
-        SetChannel(base, c, *spline_, ScalarTable::Combine(constant[c], *one, -slope[c], *fresnel));
+        SetChannel(base, c, *spline_, white->Mix(constant[c], -slope[c]));
       }
     }
 
@@ -206,37 +193,13 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
       kind_ = GlossKind::kMirror;
     } else if (coated) {
       const double alpha = double(gltf->roughness) * gltf->roughness;
-      const auto dv = [alpha](const Vec3d& wi, const Vec3d& wo) {
-        const Vec3d h = (wi + wo).normalized();
-        return GgxD(h.z(), alpha) * GgxV(wi.z(), wo.z(), alpha);
-      };
-      const HalfVectorRule rule{.width = alpha};
-      const auto unit = cache.Get(Key("ggx", gltf->roughness, cap, knots),
-                                  [&] { return ScalarTable::Build(dv, cap, rule, knots); });
-      const auto grazing = cache.Get(Key("ggx fresnel", gltf->roughness, cap, knots), [&] {
-        return ScalarTable::Build(
-            [&](const Vec3d& wi, const Vec3d& wo) { return dv(wi, wo) * Pow5(1.0 - HalfCosine(wi, wo)); },
-            cap, rule, knots);
-      });
-      const auto sum = cache.Get(Key("ggx sum", gltf->roughness, 0, knots), [&] {
-        return ScalarTable::Build(
-            [&](const Vec3d& wi, const Vec3d& wo) {
-              return dv(wi, wo) * (1.0 + Pow5(1.0 - HalfCosine(wi, wo)));
-            },
-            0, rule, knots);
-      });
-      // Degree and kind follow from roughness alone, so that colours share tables. The error stated is the
-      // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing
-      // angles.
-      gloss.l_max = DegreeWithin(*unit, options);
-      const bool within = unit->Error(gloss.l_max) <= options.error || options.force_l_max >= 0;
-      kind_ = within ? GlossKind::kLobe : GlossKind::kSharp;
-      const float f0_mean = f0.mean();
-      gloss.error =
-          ScalarTable::Combine(f0_mean, *unit, f90 - f0_mean, *grazing, sum->norm2).Error(gloss.l_max);
-      for (int c = 0; c < 3; ++c) {
-        SetChannel(gloss, c, *spline_, ScalarTable::Combine(f0[c], *unit, f90 - f0[c], *grazing));
-      }
+      gloss_from(
+          "ggx", gltf->roughness, alpha,
+          [alpha](const Vec3d& wi, const Vec3d& wo) {
+            const Vec3d h = (wi + wo).normalized();
+            return GgxD(h.z(), alpha) * GgxV(wi.z(), wo.z(), alpha);
+          },
+          f0, f90 - f0);
     }
   }
   const bool lambertian_base = base.l_max < 0 || base.control[0].empty();

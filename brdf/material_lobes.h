@@ -58,13 +58,14 @@ struct PartLobes {
   Rgb Albedo(float cos_theta_i) const;
 };
 
-/// Scalar tables by model and parameter, shared by the materials of one scene.
+/// Tables by model and parameter, shared by the materials of one scene.
 class TableCache {
  public:
-  std::shared_ptr<const ScalarTable> Get(const std::string& key, const std::function<ScalarTable()>& build);
+  std::shared_ptr<const SchlickTables> Get(const std::string& key,
+                                           const std::function<SchlickTables()>& build);
 
  private:
-  std::map<std::string, std::shared_ptr<const ScalarTable>> tables_;
+  std::map<std::string, std::shared_ptr<const SchlickTables>> tables_;
 };
 
 /// Everything transport needs to know of a material's reflection.

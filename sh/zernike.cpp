@@ -8,28 +8,31 @@
 
 namespace lobe {
 
+ZernikeStep::ZernikeStep(int m, int j) {
+  if (j == 0) {
+    // The general form is 0/0 at j = 0, m = 0.
+    a = 0.5 * m + 1.0;
+    b = -0.5 * m;
+    c = 0.0;
+    return;
+  }
+  const double s = 2.0 * j + m, d = 2.0 * (j + 1.0) * (j + m + 1.0);
+  a = (s + 1.0) * (s + 2.0) / d;
+  b = -double(m) * m * (s + 1.0) / (d * s);
+  c = 2.0 * j * (j + m) * (s + 2.0) / (d * s);
+}
+
+double ZernikeScale(int n, int m) { return std::sqrt((m == 0 ? 1.0 : 2.0) * (n + 1) / std::numbers::pi); }
+
 void ZernikeRadial(int m, int n_max, double rho, double* out) {
-  if (n_max < m) return;
   const double x = 2.0 * rho * rho - 1.0;
-  const double rho_m = std::pow(rho, m);
-  const auto scale = [m](int n) { return std::sqrt((m == 0 ? 1.0 : 2.0) * (n + 1) / std::numbers::pi); };
-  double before = 0, p = 1;
-  out[0] = scale(m) * rho_m;
-  for (int j = 0; m + 2 * (j + 1) <= n_max; ++j) {
-    // DLMF 18.9.2 for P^(0, m); its general form is 0/0 at j = 0, m = 0.
-    double next;
-    if (j == 0) {
-      next = 1.0 + 0.5 * (m + 2.0) * (x - 1.0);
-    } else {
-      const double s = 2.0 * j + m, d = 2.0 * (j + 1.0) * (j + m + 1.0);
-      const double a = (s + 1.0) * (s + 2.0) / d;
-      const double b = -double(m) * m * (s + 1.0) / (d * s);
-      const double c = 2.0 * j * (j + m) * (s + 2.0) / (d * s);
-      next = (a * x + b) * p - c * before;
-    }
+  double before = 0, p = std::pow(rho, m);
+  for (int n = m, j = 0; n <= n_max; n += 2, ++j) {
+    out[j] = ZernikeScale(n, m) * p;
+    const ZernikeStep step(m, j);
+    const double next = (step.a * x + step.b) * p - step.c * before;
     before = p;
     p = next;
-    out[j + 1] = scale(m + 2 * (j + 1)) * rho_m * p;
   }
 }
 

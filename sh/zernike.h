@@ -23,6 +23,15 @@ namespace lobe {
 /// Recurrence of the Jacobi polynomials P^(0,m) (DLMF 18.9.2); stable in double to n = 1000.
 void ZernikeRadial(int m, int n_max, double rho, double* out);
 
+/// One step of that recurrence, before scaling: R_{m+2(j+1)} = (a (2 rho^2 - 1) + b) R_{m+2j} - c
+/// R_{m+2(j-1)}.
+struct ZernikeStep {
+  double a, b, c;
+  ZernikeStep(int m, int j);
+};
+/// The scale that makes R_n^m {cos, sin}(m phi) orthonormal.
+double ZernikeScale(int n, int m);
+
 /// Linear maps between coefficients over H and over Z for one degree cap. They split by |m|; block m
 /// is triangular, (l_max - m) / 2 + 1 square.
 class ZernikeTransform {
