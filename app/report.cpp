@@ -60,8 +60,8 @@ std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& opt
   std::vector<MaterialRow> rows;
   for (const Material& m : scene.materials) {
     const MaterialLobes lobes(m.reflectance, options, cache);
-    rows.push_back({m.name, Describe(m.reflectance), lobes.kind(), lobes.base.l_max, lobes.gloss.l_max,
-                    lobes.gloss.error, m.emission});
+    rows.push_back({m.name, Describe(m.reflectance), lobes.kind(), lobes.transmits(), lobes.base.l_max,
+                    lobes.gloss.l_max, lobes.gloss.error, m.emission});
   }
   return rows;
 }
@@ -70,7 +70,7 @@ std::vector<MaterialRow> MaterialRows(const Solution& solution) {
   std::vector<MaterialRow> rows;
   for (size_t i = 0; i < solution.scene.materials.size(); ++i) {
     const Material& m = solution.scene.materials[i];
-    rows.push_back({m.name, Describe(m.reflectance), solution.material_kinds[i], -1, -1,
+    rows.push_back({m.name, Describe(m.reflectance), solution.material_kinds[i], m.transmits(), -1, -1,
                     solution.material_errors[i], m.emission});
   }
   for (size_t p = 0; p < solution.mesh.patches.size(); ++p) {
@@ -87,7 +87,8 @@ std::string MaterialText(const std::vector<MaterialRow>& rows) {
   for (const MaterialRow& r : rows) {
     const bool has_lobe = r.kind == GlossKind::kLobe || r.kind == GlossKind::kSharp;
     const bool emits = (r.emission > 0).any();
-    table.AddRow({r.name.empty() ? "(unnamed)" : r.name, r.model, Name(r.kind), Degree(r.l_max_base),
+    table.AddRow({r.name.empty() ? "(unnamed)" : r.name, r.model,
+                  Name(r.kind) + std::string(r.translucent ? ", translucent" : ""), Degree(r.l_max_base),
                   Degree(r.l_max_gloss), has_lobe ? Percent(r.lobe_error) : "-",
                   emits ? Short(Luminance(r.emission)) : "-"});
   }
@@ -100,6 +101,7 @@ json MaterialJson(const std::vector<MaterialRow>& rows) {
     json entry = {{"name", r.name},
                   {"model", r.model},
                   {"kind", Name(r.kind)},
+                  {"translucent", r.translucent},
                   {"lobe_error", r.lobe_error},
                   {"emission", ToJson(r.emission)}};
     entry["l_max_base"] = r.l_max_base < 0 ? json() : json(r.l_max_base);

@@ -15,6 +15,7 @@ namespace lobe {
 struct MaterialRow {
   std::string name, model;
   GlossKind kind = GlossKind::kNone;
+  bool translucent = false;               ///< light goes through to the other side
   int l_max_base = -1, l_max_gloss = -1;  ///< -1: no such part
   double lobe_error = 0;                  ///< flux-weighted, fraction
   Rgb emission = Rgb::Zero();

@@ -165,17 +165,29 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
     const bool coated = (f0 > 0).any() || f90 > 0;
 
     // Base: c_diff / pi (1 - F), F = f0 + (f90 - f0)(1 - V.H)^5 (of the largest channel with
-    // KHR_materials_specular). A constant and one universal table.
-    const Rgb diffuse = gltf->DiffuseColor();
+    // KHR_materials_specular). A constant and one universal table. What passes to the other side is weighed
+    // by the same coat, so its albedo comes from the same table.
+    const Rgb diffuse = gltf->DiffuseColor(), passed = gltf->TransmissionColor();
     const Rgb f0_base = gltf->has_specular ? Rgb::Constant(f0.maxCoeff()) : f0;
     const Rgb constant = diffuse * (1 - f0_base), slope = diffuse * (f90 - f0_base);
-    if ((slope.abs() < 1e-7f).all()) {
-      if ((diffuse > 0).any() || !coated) diffuse_albedo_ = LambertPart(base, constant);
-    } else if ((diffuse > 0).any()) {
-      const auto white = cache.Get(Key("lambert", 0, kBaseDegreeCap, knots), [&] {
+    transmits_ = Transmits(reflectance);
+    transmission_constant_ = passed * (1 - f0_base);
+    transmission_slope_ = passed * (f90 - f0_base);
+    const bool sloped_transmission = transmits_ && (transmission_slope_.abs() >= 1e-7f).any();
+    const bool sloped = (slope.abs() >= 1e-7f).any();
+    std::shared_ptr<const SchlickTables> white;
+    if (sloped || sloped_transmission) {
+      white = cache.Get(Key("lambert", 0, kBaseDegreeCap, knots), [&] {
         return SchlickTables::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
                                     kBaseDegreeCap, HalfVectorRule{.width = 1.0}, knots);
       });
+    }
+    if (sloped_transmission) {
+      for (const double albedo : white->rising.albedo) fresnel_albedo_.push_back(float(albedo));
+    }
+    if (!sloped) {
+      if ((diffuse > 0).any() || !coated || transmits_) diffuse_albedo_ = LambertPart(base, constant);
+    } else {
       // Only the Fresnel part is cut; the steepest channel decides.
       int steepest = 0;
       (slope / constant.max(1e-6f)).maxCoeff(&steepest);
@@ -210,6 +222,11 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
 Rgb MaterialLobes::Albedo(float cos_theta_i) const {
   if (diffuse()) return diffuse_albedo_;
   return base.Albedo(cos_theta_i) + gloss.Albedo(cos_theta_i);
+}
+
+Rgb MaterialLobes::TransmissionAlbedo(float cos_theta_i) const {
+  if (fresnel_albedo_.empty()) return transmission_constant_;
+  return transmission_constant_ - transmission_slope_ * FineAngle(cos_theta_i).Read(fresnel_albedo_);
 }
 
 Rgb MaterialLobes::MirrorAlbedo(float cos_theta_i) const {

@@ -68,7 +68,7 @@ class TableCache {
   std::map<std::string, std::shared_ptr<const SchlickTables>> tables_;
 };
 
-/// Everything transport needs to know of a material's reflection.
+/// Everything transport needs to know of a material's reflection and transmission.
 class MaterialLobes {
  public:
   MaterialLobes(const Reflectance& reflectance, const LobeOptions& options, TableCache& cache);
@@ -83,7 +83,14 @@ class MaterialLobes {
   Rgb Albedo(float cos_theta_i) const;
   /// Fraction reflected by the ideal mirror coat; 0 unless kind() is kMirror.
   Rgb MirrorAlbedo(float cos_theta_i) const;
-  Rgb DiffuseAlbedo() const { return diffuse_albedo_; }  ///< for diffuse() materials
+  Rgb DiffuseAlbedo() const { return diffuse_albedo_; }  ///< reflected; for diffuse() materials
+
+  /// Light passes to the other side. Such a material always has a base (a black one at least), since that
+  /// is the part by which transmitted light leaves.
+  bool transmits() const { return transmits_; }
+  /// Fraction of the irradiance arriving at this cosine that leaves from the other side: the exact albedo of
+  /// EvaluateTransmission. Zero if it does not transmit.
+  Rgb TransmissionAlbedo(float cos_theta_i) const;
 
   PartLobes base, gloss;
 
@@ -92,6 +99,11 @@ class MaterialLobes {
   Reflectance reflectance_;
   bool diffuse_ = true;
   Rgb diffuse_albedo_ = Rgb::Zero();
+  bool transmits_ = false;
+  // TransmissionAlbedo is the constant less the slope times Fresnel's albedo, on ScalarTable's fine grid;
+  // without a coat there is no slope, and the grid stays empty.
+  Rgb transmission_constant_ = Rgb::Zero(), transmission_slope_ = Rgb::Zero();
+  std::vector<float> fresnel_albedo_;
   std::shared_ptr<const IncidenceSpline> spline_;
 };
 

@@ -18,6 +18,12 @@ Rgb FresnelAtHalf(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) 
   return m.Fresnel(float(std::abs(wi.dot((wi + wo).normalized()))));
 }
 
+// What the coat lets through to the base and back out again.
+Rgb UnderTheCoat(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) {
+  const Rgb fresnel = FresnelAtHalf(m, wi, wo);
+  return m.has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
+}
+
 // Which part of each model is smooth ("base") and which is the coat ("gloss").
 struct Base {
   const Vec3d &wi, &wo;
@@ -26,9 +32,7 @@ struct Base {
   Rgb operator()(const Phong&) const { return Rgb::Zero(); }
   Rgb operator()(const Ward&) const { return Rgb::Zero(); }
   Rgb operator()(const MetallicRoughness& m) const {
-    const Rgb fresnel = FresnelAtHalf(m, wi, wo);
-    const Rgb weight = m.has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
-    return m.DiffuseColor() * weight / float(kPi);
+    return m.DiffuseColor() * UnderTheCoat(m, wi, wo) / float(kPi);
   }
 };
 
@@ -60,7 +64,13 @@ struct Gloss {
 
 }  // namespace
 
-Rgb MetallicRoughness::DiffuseColor() const { return base_color * (1.0f - metallic); }
+Rgb MetallicRoughness::DiffuseColor() const {
+  return base_color * ((1.0f - metallic) * (1.0f - diffuse_transmission));
+}
+
+Rgb MetallicRoughness::TransmissionColor() const {
+  return diffuse_transmission_color * ((1.0f - metallic) * diffuse_transmission);
+}
 
 Rgb MetallicRoughness::F0() const {
   // Also right for KHR_materials_ior's "ior 0", which asks for f0 = 1.
@@ -82,6 +92,22 @@ Rgb EvaluateBase(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
 
 Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
   return AboveHorizon(wi, wo) ? std::visit(Gloss{wi, wo}, r) : Rgb::Zero();
+}
+
+Rgb EvaluateTransmission(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
+  const auto* m = std::get_if<MetallicRoughness>(&r);
+  const Vec3d mirrored(wo.x(), wo.y(), -wo.z());
+  if (!m || !AboveHorizon(wi, mirrored)) return Rgb::Zero();
+  return m->TransmissionColor() * UnderTheCoat(*m, wi, mirrored) / float(kPi);
+}
+
+bool Transmits(const Reflectance& r) {
+  const auto* m = std::get_if<MetallicRoughness>(&r);
+  if (!m) return false;
+  // F0 <= F90, so that a coat that reflects everything at normal incidence does so at every angle.
+  const Rgb f0 = m->F0();
+  const Rgb through = m->has_specular ? Rgb::Constant(1.0f - f0.maxCoeff()) : Rgb(1.0f - f0);
+  return (m->TransmissionColor() * through > 0).any();
 }
 
 double GgxD(double cos_h, double alpha) {

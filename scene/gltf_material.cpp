@@ -8,6 +8,8 @@ namespace {
 /// Ours: a model that glTF does not have, in place of metallic-roughness (docs/format.md).
 constexpr const char* kBrdfExtension = "LOBE_materials_brdf";
 
+constexpr const char* kTransmissionExtension = "KHR_materials_diffuse_transmission";
+
 void WarnOfTextures(const GltfJson& place, const GltfJson& material, std::vector<std::string>* warnings) {
   for (const auto& [key, value] : place.value().items()) {
     if (!key.ends_with("Texture")) continue;
@@ -52,10 +54,16 @@ MetallicRoughness ReadMetallicRoughness(const GltfJson& material, std::vector<st
   m.specular = static_cast<float>(specular.Number("specularFactor", 1, 0, 1));
   m.specular_color = specular.Color("specularColorFactor", Rgb::Constant(1));
   WarnOfTextures(specular, material, warnings);
+
+  const GltfJson transmission = material.Extension(kTransmissionExtension);
+  m.diffuse_transmission = static_cast<float>(transmission.Number("diffuseTransmissionFactor", 0, 0, 1));
+  // Above 1 the sheet would gain energy.
+  m.diffuse_transmission_color = transmission.Color("diffuseTransmissionColorFactor", Rgb::Constant(1), 0, 1);
+  WarnOfTextures(transmission, material, warnings);
   return m;
 }
 
-void WarnOfTheRest(const GltfJson& material, std::vector<std::string>* warnings) {
+void WarnOfTheRest(const GltfJson& material, const Material& read, std::vector<std::string>* warnings) {
   WarnOfTextures(material, material, warnings);
   const std::string alpha = material.String("alphaMode", "OPAQUE");
   if (alpha != "OPAQUE") {
@@ -67,9 +75,12 @@ void WarnOfTheRest(const GltfJson& material, std::vector<std::string>* warnings)
         name == "KHR_materials_emissive_strength" || name == kBrdfExtension) {
       continue;
     }
-    const bool transmits = name.find("transmission") != std::string::npos;
+    // Our own models have no transmission.
+    const bool transmission = name == kTransmissionExtension;
+    if (transmission && std::holds_alternative<MetallicRoughness>(read.reflectance)) continue;
+    const bool opaque = !read.transmits() && (transmission || name == "KHR_materials_transmission");
     warnings->push_back(material.element() + ": " + name + " is not read; " +
-                        (transmits ? "the surface is opaque" : "the material is taken without it"));
+                        (opaque ? "the surface is opaque" : "the material is taken without it"));
   }
 }
 
@@ -93,7 +104,12 @@ std::vector<Material> ReadMaterials(const GltfFile& file, std::vector<std::strin
     } else {
       material.reflectance = ReadMetallicRoughness(json, warnings);
     }
-    WarnOfTheRest(json, warnings);
+    if (material.transmits() && !material.double_sided) {
+      material.double_sided = true;
+      warnings->push_back(json.element() + ": it lets light through by " + kTransmissionExtension +
+                          " but is not doubleSided; it is taken as double-sided");
+    }
+    WarnOfTheRest(json, material, warnings);
     materials.push_back(std::move(material));
   }
   return materials;

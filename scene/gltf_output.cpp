@@ -52,6 +52,11 @@ struct WriteReflectance {
       Extension("KHR_materials_specular") = {{"specularFactor", JsonNumber(m.specular)},
                                              {"specularColorFactor", JsonColour(m.specular_color)}};
     }
+    if (m.diffuse_transmission != 0 || (m.diffuse_transmission_color != 1).any()) {
+      Extension("KHR_materials_diffuse_transmission") = {
+          {"diffuseTransmissionFactor", JsonNumber(m.diffuse_transmission)},
+          {"diffuseTransmissionColorFactor", JsonColour(m.diffuse_transmission_color)}};
+    }
   }
 
  private:

@@ -28,7 +28,7 @@ struct RayHit {
 /// run in many threads; results do not depend on how rays are grouped.
 ///
 /// Of faces met at one t the first counts. Where faces repeat each other's three corners, as sheets modelled
-/// for both sides do, each winding shows its front.
+/// for both sides do, each winding shows its front; if both are translucent the first shows both its sides.
 class RayTracer {
  public:
   explicit RayTracer(const Scene& scene);

@@ -17,8 +17,10 @@ struct Material {
   std::string name;
   Reflectance reflectance = MetallicRoughness{};
   Rgb emission = Rgb::Zero();  ///< radiance, W m^-2 sr^-1, leaving the front (both sides if double_sided)
+  /// Also of whatever transmits, since light goes both ways through it: readers see to that.
   bool double_sided = false;
   bool emits() const { return (emission > 0).any(); }
+  bool transmits() const { return Transmits(reflectance); }
 };
 
 /// An input triangle in world space, the thing rays hit. Counter-clockwise seen from its front.

@@ -37,8 +37,12 @@ std::vector<Group> MakeGroups(const Scene& scene, const std::vector<bool>& sides
     // A face of no area has no side; the readers drop them, scenes made in code may not.
     if (!scene.GeometricNormal(scene.faces[f]).allFinite() || scene.Area(scene.faces[f]) == 0) continue;
     for (const Side side : {Side::kFront, Side::kBack}) {
-      const bool want = sides.empty() ? side == Side::kFront || scene.material(scene.faces[f]).double_sided
-                                      : sides[2 * size_t{f} + static_cast<size_t>(side)];
+      const Material& material = scene.material(scene.faces[f]);
+      bool want = sides.empty() ? side == Side::kFront || material.double_sided
+                                : sides[2 * size_t{f} + static_cast<size_t>(side)];
+      // Light that goes through needs nodes to arrive at.
+      if (!want && material.transmits())
+        want = sides.empty() || sides[2 * size_t{f}] || sides[2 * size_t{f} + 1];
       if (want) wanted.push_back({f, side});
     }
   }
@@ -109,6 +113,17 @@ Vec3 CornerNormal(const Scene& scene, const Face& face, int k, const Vec3& geome
   return cosine > 0 ? normal : Vec3(-normal);
 }
 
+/// The same triangles seen from behind: corners 1 and 2 change places, and so do the two halves of a cut.
+void Flip(Bisection* bisection) {
+  for (Vec3& n : bisection->normal) n = -n;
+  for (Bisection::Cell& cell : bisection->cells) {
+    std::swap(cell.corner[1], cell.corner[2]);
+    cell.apex = static_cast<uint8_t>((3 - cell.apex) % 3);
+    if (cell.child != kNone) std::swap(bisection->cells[cell.child], bisection->cells[cell.child + 1]);
+  }
+}
+
+/// Backs are bisected as fronts and then flipped, so that a face is cut alike on both sides.
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
                       const TessellateOptions& options) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
@@ -119,11 +134,6 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
     const Vec3 geometric = scene.GeometricNormal(face);
     std::array<Vec3, 3> position = scene.Corners(face), normal;
     for (int k = 0; k < 3; ++k) normal[k] = CornerNormal(scene, face, k, geometric);
-    if (s.side == Side::kBack) {
-      std::swap(position[1], position[2]);
-      std::swap(normal[1], normal[2]);
-      for (Vec3& n : normal) n = -n;
-    }
     std::array<uint32_t, 3> corner;
     for (int k = 0; k < 3; ++k) corner[k] = welder.Add(position[k], normal[k]);
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
@@ -132,8 +142,10 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
     }
     triangles.push_back(corner);
   }
-  return BisectLongEdges(triangles, welder.positions(), welder.normals(),
-                         options.max_edge * (1 + kEdgeSlack));
+  Bisection bisection =
+      BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack));
+  if (group.front().side == Side::kBack) Flip(&bisection);
+  return bisection;
 }
 
 /// Roots of a group, by connected piece, in order of their first.

@@ -21,7 +21,8 @@ struct TessellateOptions {
 /// Welds, splits edges by longest-edge bisection until none is longer than max_edge, and lays out
 /// patches. No T-junction inside a patch: an edge is always split for both its elements.
 /// `sides`: 2 * face + side -> wanted or not (see solver/exposure.h); empty means every front, and every
-/// back of double-sided materials.
+/// back of double-sided materials. A face whose material transmits has nodes on both sides if either is
+/// wanted, and is cut alike on both (scene/opposite_nodes.h).
 /// Throws InputError if more than 2^31 elements would be needed.
 Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides = {});
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 #include <tbb/parallel_for.h>
@@ -63,19 +64,28 @@ struct LitPoint {
   Vec3 position, normal;
 };
 
-// Is a point on one of `faces`, on `side`, in sight of one of `from`?
-bool InSight(const Scene& scene, const RayTracer& tracer, const std::vector<uint32_t>& faces, Side side,
-             const std::vector<LitPoint>& from, RandomStream random) {
+// A point on one of `faces`, on `side`, in sight of one of `from`.
+struct Sighting {
+  uint32_t face;
+  Vec3 position, normal;
+};
+std::optional<Sighting> FindInSight(const Scene& scene, const RayTracer& tracer,
+                                    const std::vector<uint32_t>& faces, Side side,
+                                    const std::vector<LitPoint>& from, RandomStream random) {
   for (int i = 0; i < kAimedRays; ++i) {
-    const Face& face = scene.faces[faces[random.NextBits() % faces.size()]];
+    const uint32_t f = faces[random.NextBits() % faces.size()];
+    const Face& face = scene.faces[f];
     const LitPoint& lit = from[random.NextBits() % from.size()];
     const Vec3 normal = scene.GeometricNormal(face) * (side == Side::kFront ? 1.0f : -1.0f);
     const float u = random.Next(), v = random.Next();
-    const Vec3 at = PointOnTriangle(scene.Corners(face), u, v) + normal * tracer.epsilon();
+    const Vec3 position = PointOnTriangle(scene.Corners(face), u, v);
+    const Vec3 at = position + normal * tracer.epsilon();
     const Vec3 to = lit.position + lit.normal * tracer.epsilon() - at;
-    if (to.dot(normal) > 0 && to.dot(lit.normal) < 0 && !tracer.Occluded({at, 0.0f, to, 1.0f})) return true;
+    if (to.dot(normal) > 0 && to.dot(lit.normal) < 0 && !tracer.Occluded({at, 0.0f, to, 1.0f})) {
+      return Sighting{f, position, normal};
+    }
   }
-  return false;
+  return std::nullopt;
 }
 
 // Index of the emitter that holds `u` of the total power, u in [0, 1).
@@ -142,7 +152,13 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
         at = p[0] * (1 - hit.u - hit.v) + p[1] * hit.u + p[2] * hit.v;
         normal = scene.GeometricNormal(scene.faces[hit.face]);
         if (hit.side == Side::kBack) normal = -normal;
-        met[walk].push_back({2 * piece[hit.face] + uint32_t(hit.side), at, normal});
+        const uint32_t met_side = 2 * piece[hit.face] + uint32_t(hit.side);
+        met[walk].push_back({met_side, at, normal});
+        if (scene.material(scene.faces[hit.face]).transmits()) {
+          met[walk].push_back({met_side ^ 1, at, -normal});
+          // However little goes through, what lies behind is lit; so a coin decides, not the albedo.
+          if (random.Next() < 0.5f) normal = -normal;
+        }
       }
     });
     bool anything_new = false;
@@ -156,27 +172,39 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
     if (!anything_new) break;
   }
 
-  // A small thing in a large scene is seldom met by chance, and would stay black.
-  std::map<uint32_t, std::vector<uint32_t>> unmet;  // faces by 2 * piece + side
-  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
-    for (uint32_t side = 0; side < (double_sided(f) ? 2u : 1u); ++side) {
-      if (!lit_piece[2 * piece[f] + side]) unmet[2 * piece[f] + side].push_back(f);
+  // A small thing in a large scene is seldom met by chance, and would stay black. If it is translucent, what
+  // lies behind it is looked for in turn: every time round, from the far sides of what was found before.
+  while (!points.empty()) {
+    std::map<uint32_t, std::vector<uint32_t>> unmet;  // faces by 2 * piece + side
+    for (uint32_t f = 0; f < scene.faces.size(); ++f) {
+      for (uint32_t side = 0; side < (double_sided(f) ? 2u : 1u); ++side) {
+        if (!lit_piece[2 * piece[f] + side]) unmet[2 * piece[f] + side].push_back(f);
+      }
     }
-  }
-  const std::vector<std::pair<uint32_t, std::vector<uint32_t>>> aims(unmet.begin(), unmet.end());
-  std::vector<uint8_t> in_sight(aims.size());
-  tbb::parallel_for(size_t(0), aims.size(), [&](size_t i) {
-    const auto& [side, faces] = aims[i];
-    const RandomStream random(Mix(Mix(seed, 0xa13), side));
-    in_sight[i] = InSight(scene, tracer, faces, Side(side % 2), points, random);
-  });
-  for (size_t i = 0; i < aims.size(); ++i) {
-    if (in_sight[i]) lit_piece[aims[i].first] = true;
+    const std::vector<std::pair<uint32_t, std::vector<uint32_t>>> aims(unmet.begin(), unmet.end());
+    std::vector<std::optional<Sighting>> sightings(aims.size());
+    tbb::parallel_for(size_t(0), aims.size(), [&](size_t i) {
+      const auto& [side, faces] = aims[i];
+      const RandomStream random(Mix(Mix(seed, 0xa13), side));
+      sightings[i] = FindInSight(scene, tracer, faces, Side(side % 2), points, random);
+    });
+    points.clear();
+    for (size_t i = 0; i < aims.size(); ++i) {
+      if (!sightings[i]) continue;
+      const uint32_t side = aims[i].first;
+      lit_piece[side] = true;
+      if (!scene.material(scene.faces[sightings[i]->face]).transmits()) continue;
+      lit_piece[side ^ 1] = true;
+      points.push_back({side ^ 1, sightings[i]->position, -sightings[i]->normal});
+    }
   }
 
   std::vector<bool> lit(2 * scene.faces.size());
   for (size_t f = 0; f < scene.faces.size(); ++f) {
-    for (int side = 0; side < 2; ++side) lit[2 * f + side] = lit_piece[2 * piece[f] + side];
+    const bool through = scene.material(scene.faces[f]).transmits();
+    for (size_t side = 0; side < 2; ++side) {
+      lit[2 * f + side] = lit_piece[2 * piece[f] + side] || (through && lit_piece[2 * piece[f] + (1 - side)]);
+    }
   }
   return lit;
 }

@@ -13,7 +13,8 @@ namespace lobe {
 
 /// Which sides of which faces light can reach: 2 * face + side. Found by random walks from the emitters,
 /// in rounds until a round reaches nothing new, per connected piece of a surface; then by rays aimed at what
-/// walks have not met. A side that no light meets gets no nodes and costs nothing (inside a closed box, say).
+/// walks have not met. Walks go on through what transmits, and of that both sides are lit if either is.
+/// A side that no light meets gets no nodes and costs nothing (inside a closed box, say).
 /// Throws InputError if nothing emits.
 std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed);
 

@@ -106,6 +106,13 @@ TEST_F(CommandsTest, InfoOfASceneSaysWhatEachMaterialCosts) {
   }
 }
 
+TEST_F(CommandsTest, InfoNamesTranslucentMaterials) {
+  for (const json& m : RunForJson({"info", ScenePath("lampshade")})["materials"]) {
+    EXPECT_EQ(m["translucent"], m["name"] == "shade") << m["name"];
+  }
+  EXPECT_THAT(RunLobe({"info", ScenePath("lampshade")}).out, HasSubstr("none, translucent"));
+}
+
 TEST_F(CommandsTest, InfoOfASolutionRepeatsWhatSolveSaid) {
   const json solved = RunForJson({"solve", ScenePath("cornell_glossy"), "-o", File("out.glb"), "--edge", "2",
                                   "--lmax", "6", "--light-samples", "4", "--delta-areas", "16"});

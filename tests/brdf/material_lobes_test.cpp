@@ -208,6 +208,74 @@ TEST(MaterialLobesTest, MomentsAddUpLikeLight) {
   }
 }
 
+MetallicRoughness Sheet(float t, MetallicRoughness coat) {
+  coat.diffuse_transmission = t;
+  coat.diffuse_transmission_color = Rgb(0.9f, 0.65f, 0.35f);
+  return coat;
+}
+
+// A tenth of what reflected lobes may be off: no spline lies between, only the fine grid.
+TEST(MaterialLobesTest, TransmissionAlbedoIsTheFluxOfTheClosedFormAtEveryAngle) {
+  TableCache cache;
+  MetallicRoughness tinted = Gltf(0.8f, 0.2f, 0.5f);
+  tinted.has_specular = true;
+  tinted.specular_color = Rgb(0.3f, 4.0f, 1.0f);
+  for (const MetallicRoughness& coat : {Gltf(0.6f, 0, 0.3f), Gltf(0.6f, 0.5f, 1.0f), tinted}) {
+    for (const float t : {0.4f, 1.0f}) {
+      const Reflectance sheet = Sheet(t, coat);
+      const MaterialLobes material(sheet, LobeOptions{}, cache);
+      EXPECT_TRUE(material.transmits());
+      for (const double degrees : {0.0, 7.3, 31.0, 52.7, 71.1, 83.9, 87.4, 89.0}) {
+        const Vec3 wi = At(degrees, 0.8);
+        const Rgb albedo = material.TransmissionAlbedo(wi.z());
+        for (const int c : {0, 1}) {
+          const double exact = test::SlowAlbedo(
+              [&](const Vec3d& a, const Vec3d& b) {
+                return double(EvaluateTransmission(sheet, a, Vec3d(b.x(), b.y(), -b.z()))[c]);
+              },
+              wi.z(), 1.0, 400, 200);
+          EXPECT_NEAR(albedo[c], exact, 1e-4) << Describe(sheet) << " t " << t << " at " << degrees;
+        }
+        // What leaves both sides, but for the surplus of glTF's gloss.
+        EXPECT_LE((albedo + material.base.Albedo(wi.z())).maxCoeff(), 1.0f);
+      }
+    }
+  }
+}
+
+TEST(MaterialLobesTest, UncoatedSheetsPassAConstantShare) {
+  TableCache cache;
+  MetallicRoughness coat = Diffuse();
+  const MaterialLobes paper(Sheet(0.4f, coat), LobeOptions{}, cache);
+  EXPECT_TRUE(paper.diffuse());
+  EXPECT_NEAR(paper.DiffuseAlbedo()[0], 0.6f * 0.7f, 1e-6) << "reflected alone";
+  EXPECT_NEAR(paper.Albedo(0.3f)[0], 0.6f * 0.7f, 1e-6);
+  for (const float cosine : {0.0f, 0.05f, 0.5f, 1.0f}) {
+    EXPECT_NEAR(paper.TransmissionAlbedo(cosine)[1], 0.4f * 0.65f, 1e-6);
+  }
+}
+
+TEST(MaterialLobesTest, MetalsAndOpaqueMaterialsTransmitNothing) {
+  TableCache cache;
+  for (const Reflectance& r : {Reflectance(Lambert{}), Reflectance(Gltf(0.8f, 0, 0.5f)),
+                               Reflectance(Sheet(1, Gltf(0.8f, 1, 0.5f)))}) {
+    const MaterialLobes material(r, LobeOptions{}, cache);
+    EXPECT_FALSE(material.transmits());
+    EXPECT_EQ(material.TransmissionAlbedo(0.7f).maxCoeff(), 0.0f);
+  }
+}
+
+// Transmitted light leaves by the base, even where nothing is reflected under the coat.
+TEST(MaterialLobesTest, SheetsThatReflectNothingUnderTheCoatStillHaveABase) {
+  TableCache cache;
+  const MaterialLobes sheet(Sheet(1, Gltf(0.6f, 0, 0.5f)), LobeOptions{}, cache);
+  ASSERT_EQ(sheet.base.l_max, 0);
+  EXPECT_GE(sheet.gloss.l_max, 0);
+  const auto [base, gloss] = Lobes(sheet, At(40, 1));
+  EXPECT_EQ(base.cwiseAbs().maxCoeff(), 0.0f);
+  EXPECT_GT(gloss(0, 0), 0.0f);
+}
+
 // glTF's own formula gains energy near grazing; the ledger is to show it, so the table must not hide it.
 TEST(MaterialLobesTest, KeepsTheAlbedoAboveOneOfGltfsFormula) {
   TableCache cache;

@@ -478,6 +478,63 @@ TEST(GltfMaterialTest, LobeExtensionSelectsModelsGltfLacks) {
   EXPECT_EQ(std::get<Ward>(read({{"model", "ward"}, {"alpha", 0.1}})).alpha, 0.1f);
 }
 
+TEST(GltfMaterialTest, DiffuseTransmissionIsReadAndTakenAsDoubleSided) {
+  const auto sheet = [](json extension, json rest = json::object()) {
+    rest["name"] = "shade";
+    rest["pbrMetallicRoughness"]["metallicFactor"] = 0.5;
+    rest["extensions"]["KHR_materials_diffuse_transmission"] = std::move(extension);
+    return rest;
+  };
+  std::vector<std::string> warnings;
+  const Material shade = ReadMaterial(
+      sheet({{"diffuseTransmissionFactor", 0.25}, {"diffuseTransmissionColorFactor", {0.9, 0.65, 0.35}}},
+            {{"doubleSided", true}}),
+      &warnings);
+  const auto& m = std::get<MetallicRoughness>(shade.reflectance);
+  EXPECT_EQ(m.diffuse_transmission, 0.25f);
+  EXPECT_TRUE((m.diffuse_transmission_color == Rgb(0.9f, 0.65f, 0.35f)).all());
+  EXPECT_TRUE(shade.transmits());
+  EXPECT_EQ(warnings, std::vector<std::string>{});
+
+  // Defaults: nothing goes through, and what would is white.
+  const Material opaque = ReadMaterial(sheet(json::object()), &warnings);
+  EXPECT_EQ(std::get<MetallicRoughness>(opaque.reflectance).diffuse_transmission, 0);
+  EXPECT_TRUE((std::get<MetallicRoughness>(opaque.reflectance).diffuse_transmission_color == 1).all());
+  EXPECT_FALSE(opaque.double_sided);
+  EXPECT_EQ(warnings, std::vector<std::string>{});
+
+  const Material thin =
+      ReadMaterial(sheet({{"diffuseTransmissionFactor", 1},
+                          {"diffuseTransmissionTexture", {{"index", 0}}},
+                          {"diffuseTransmissionColorTexture", {{"index", 0}}}},
+                         {{"extensions", {{"KHR_materials_transmission", json::object()}}}}),
+                   &warnings);
+  EXPECT_TRUE(thin.double_sided);
+  std::sort(warnings.begin(), warnings.end());
+  EXPECT_EQ(
+      warnings,
+      (std::vector<std::string>{
+          "material 0 'shade': KHR_materials_transmission is not read; the material is taken without it",
+          "material 0 'shade': diffuseTransmissionColorTexture is not read; its factor is used",
+          "material 0 'shade': diffuseTransmissionTexture is not read; its factor is used",
+          "material 0 'shade': it lets light through by KHR_materials_diffuse_transmission but is not "
+          "doubleSided; it is taken as double-sided"}));
+}
+
+TEST(GltfMaterialTest, OurOwnModelsStayOpaqueAndSaySo) {
+  std::vector<std::string> warnings;
+  const Material m =
+      ReadMaterial({{"extensions",
+                     {{"LOBE_materials_brdf", {{"model", "lambert"}}},
+                      {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 0.5}}}}}},
+                   &warnings);
+  EXPECT_FALSE(m.transmits());
+  EXPECT_FALSE(m.double_sided);
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{"material 0: KHR_materials_diffuse_transmission is not read; the "
+                                      "surface is opaque"}));
+}
+
 TEST(GltfMaterialTest, ValuesOutOfRangeNameMaterialPropertyValueAndRange) {
   const auto refused = [](json properties, std::initializer_list<std::string> words) {
     properties["name"] = "oak";
@@ -509,6 +566,12 @@ TEST(GltfMaterialTest, ValuesOutOfRangeNameMaterialPropertyValueAndRange) {
   refused(extension("KHR_materials_specular", "specularFactor", 1.1),
           {"specularFactor is 1.1, expected 0 to 1"});
   refused(extension("KHR_materials_specular", "specularColorFactor", {1, 1, -1}), {"specularColorFactor"});
+  refused(extension("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 1.5),
+          {"KHR_materials_diffuse_transmission.diffuseTransmissionFactor is 1.5, expected 0 to 1"});
+  refused(extension("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", "half"),
+          {"diffuseTransmissionFactor is \"half\", expected 0 to 1"});
+  refused(extension("KHR_materials_diffuse_transmission", "diffuseTransmissionColorFactor", {1, 1.1, 1}),
+          {"diffuseTransmissionColorFactor is [1,1.1,1], expected 3 numbers, each 0 to 1"});
   refused(extension("LOBE_materials_brdf", "model", "toon"),
           {"LOBE_materials_brdf.model is \"toon\"", "\"ward\""});
   refused(extension("LOBE_materials_brdf", "albedo", {1, 1, 1}), {"LOBE_materials_brdf.model is missing"});

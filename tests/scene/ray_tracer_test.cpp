@@ -213,6 +213,25 @@ TEST(RayTracerTest, OppositeTwinsShowTheirFrontsAndRepeatsTheFirst) {
   EXPECT_EQ(tracer.Intersect({{0.2f, 0.2f, -4}, 0, {0, 0, -1}, kFar}).face, 0u);
 }
 
+// What goes through the one has to come out of it, so the other may not stand before its back.
+TEST(RayTracerTest, ATranslucentSheetModelledTwiceIsOneSheet) {
+  SceneBuilder b;
+  MetallicRoughness paper;
+  paper.metallic = 0;
+  paper.diffuse_transmission = 0.5f;
+  const uint32_t sheet = b.AddMaterial("paper", paper, Rgb::Zero(), true);
+  b.AddTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, sheet);
+  b.AddTriangle({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, sheet);
+  const Scene scene = b.Build();
+  const RayTracer tracer(scene);
+  const RayHit front = tracer.Intersect({{0.2f, 0.3f, 1}, 0, {0, 0, -1}, kFar});
+  const RayHit back = tracer.Intersect({{0.2f, 0.3f, -1}, 0, {0, 0, 1}, kFar});
+  EXPECT_EQ(front.face, 0u);
+  EXPECT_EQ(front.side, Side::kFront);
+  EXPECT_EQ(back.face, 0u);
+  EXPECT_EQ(back.side, Side::kBack);
+}
+
 TEST(RayTracerTest, RaysEndWhereTheyAreToldTo) {
   SceneBuilder b;
   b.AddQuad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, b.AddLambert(Rgb::Zero()));

@@ -1,5 +1,6 @@
 #include "scene/tessellate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -316,6 +317,31 @@ TEST(TessellateTest, DoubleSidedFacesHaveASetOfNodesEachSide) {
     EXPECT_LT((mesh.node_position[c[1]] - p).cross(mesh.node_position[c[2]] - p).z(), 0);
   }
   EXPECT_EQ(mesh.Locate(2, Side::kBack, 0.2f, 0.3f).element, kNone);
+}
+
+TEST(TessellateTest, BothSidesOfAFaceAreCutAlike) {
+  SceneBuilder b;
+  b.AddSphere({0, 0, 0}, 1, Grey(&b, true), 5);
+  b.AddBox({2, 0, 0}, {3, 0.7f, 0.4f}, Grey(&b, true));
+  const Scene scene = b.Build();
+  std::mt19937 bits(3);
+  std::uniform_real_distribution<float> uniform;
+  for (const float edge : {0.5f, 0.11f}) {
+    const Mesh mesh = WithEdge(scene, edge);
+    for (int i = 0; i < 2000; ++i) {
+      const uint32_t f = bits() % scene.faces.size();
+      float u = uniform(bits), v = uniform(bits);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const auto front = mesh.Locate(f, Side::kFront, u, v), back = mesh.Locate(f, Side::kBack, u, v);
+      // Barycentrics a rounding error from a cut may fall to either half.
+      if (*std::min_element(front.weight, front.weight + 3) < 1e-4f) continue;
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_EQ(mesh.node_position[mesh.elements[front.element][k]],
+                  mesh.node_position[mesh.elements[back.element][(3 - k) % 3]]);
+        ASSERT_NEAR(front.weight[k], back.weight[(3 - k) % 3], 1e-4);
+      }
+    }
+  }
 }
 
 TEST(TessellateTest, OnlyWantedSidesGetNodes) {

@@ -66,6 +66,10 @@ Scene EveryKindOfScene() {
   const uint32_t mirror = b.AddMaterial("mirror", brass);
   const uint32_t lamp = b.AddMaterial("lamp", Lambert{Rgb::Zero()}, Rgb(17.1f, 12.3f, 0.7f));
   const uint32_t glow = b.AddMaterial("glow", Dielectric(), Rgb(0.3f, 0.01f, 0.7f), true);
+  MetallicRoughness paper = Dielectric();
+  paper.diffuse_transmission = 0.37f;
+  paper.diffuse_transmission_color = Rgb(0.9f, 0.65f, 0.31f);
+  const uint32_t shade = b.AddMaterial("shade", paper, Rgb::Zero(), true);
   b.AddBox({-1, 0, -1}, {1, 2, 1.1f}, wall, /*inward=*/true);
   b.AddSphere({0.1f, 0.5f, 0.2f}, 0.4f, glazed, 6);
   b.AddQuad({-0.5f, 1, -0.5f}, {0.5f, 1.1f, -0.5f}, {0.5f, 1.2f, 0.1f}, {-0.5f, 1.1f, 0.1f}, metal);
@@ -74,6 +78,7 @@ Scene EveryKindOfScene() {
   b.AddQuad({-0.9f, 0.1f, -0.9f}, {-0.2f, 0.1f, -0.9f}, {-0.2f, 1, -0.9f}, {-0.9f, 1, -0.9f}, mirror);
   b.AddQuad({-0.2f, 1.9f, -0.2f}, {0.2f, 1.9f, -0.2f}, {0.2f, 1.9f, 0.2f}, {-0.2f, 1.9f, 0.2f}, lamp);
   b.AddTriangle({0.6f, 0.3f, -0.8f}, {0.8f, 0.3f, -0.6f}, {0.7f, 0.8f, -0.7f}, glow);
+  b.AddTriangle({0.3f, 1.3f, 0.7f}, {0.8f, 1.3f, 0.7f}, {0.5f, 1.7f, 0.8f}, shade);
   b.AddCamera("view0", {0.3f, 1.1f, 0.9f}, {-0.2f, 0.7f, -0.4f});
   b.AddCamera("view \"ä\"", {-0.7f, 0.3f, 0.8f}, {0.3f, 0.9f, -0.1f}, {0.1f, 1, 0.2f}, 1.234567f);
   Scene scene = b.Build();
@@ -256,6 +261,8 @@ TEST(SolutionFileTest, MaterialsOfEveryModelComeBackUnchanged) {
       EXPECT_EQ(x.ior, y.ior);
       EXPECT_EQ(x.specular, y.specular);
       EXPECT_EQ(x.has_specular, y.has_specular);
+      EXPECT_EQ(x.diffuse_transmission, y.diffuse_transmission);
+      EXPECT_TRUE(same(x.diffuse_transmission_color, y.diffuse_transmission_color));
     }
   }
 }
