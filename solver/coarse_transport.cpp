@@ -52,7 +52,17 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
   for (int k = 0; k < clusters_; ++k) {
     for (int c = 0; c < 3; ++c) albedo_[c][k] /= std::max(area_[k], 1e-30);
   }
-  (void)opposite;
+  // A sheet's other side, where both are clusters of their own.
+  for (size_t p = 0; p < patches && !opposite.empty(); ++p) {
+    const MaterialLobes& material = materials[mesh.patches[p].material];
+    const uint32_t other = opposite[mesh.patches[p].node_begin];
+    if (!material.transmits() || other == kNone) continue;
+    const int k = int(cluster_[p]), from = int(cluster_[mesh.node_patch[other]]);
+    if (k == kClusters - 1 || from == kClusters - 1) continue;
+    other_side_[k] = from;
+    const Rgb albedo = HemisphericalMean([&](float cosine) { return material.TransmissionAlbedo(cosine); });
+    for (int c = 0; c < 3; ++c) through_[c][k] = albedo[c];
+  }
 
   // Blocks of nodes of one patch each, summed in order: the same bits for any number of threads.
   struct Block {
@@ -104,8 +114,11 @@ std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total,
     // Radiosity x = waiting + albedo F x, in watts per square metre; x is all that will ever be shot.
     Eigen::VectorXd radiosity(clusters_);
     for (int k = 0; k < clusters_; ++k) radiosity[k] = waiting(k, c) / std::max(area_[k], 1e-30);
-    const Eigen::MatrixXd system =
+    Eigen::MatrixXd system =
         Eigen::MatrixXd::Identity(clusters_, clusters_) - albedo_[c].asDiagonal() * form_factor_;
+    for (int k = 0; k < clusters_; ++k) {
+      if (other_side_[k] >= 0) system.row(k) -= through_[c][k] * form_factor_.row(other_side_[k]);
+    }
     const Eigen::VectorXd x = system.partialPivLu().solve(radiosity);
     if (!x.allFinite()) continue;
     for (size_t p = 0; p < ahead.size(); ++p) {

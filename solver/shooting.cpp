@@ -303,6 +303,9 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
       if (material.kind() == GlossKind::kMirror) {
         work.mirrored += deltas_[i].irradiance * material.MirrorAlbedo(deltas_[i].direction.dot(normal));
       }
+      if (material.transmits()) {
+        work.through += deltas_[i].irradiance * material.TransmissionAlbedo(deltas_[i].direction.dot(normal));
+      }
     }
     work.reflected = material.DiffuseAlbedo() * work.delivered;
     // Radiance albedo E / pi, as the coefficient of the constant function 1 / sqrt(2 pi).
@@ -322,10 +325,11 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
       if (material.kind() == GlossKind::kMirror) {
         work.mirrored += deltas_[i].irradiance * material.MirrorAlbedo(wi.z());
       }
+      if (material.transmits()) work.through += deltas_[i].irradiance * material.TransmissionAlbedo(wi.z());
     }
     moments_.Finish(out, out + 3 * material.base.count());
   }
-  work.absorbed = work.delivered - work.reflected - work.mirrored;
+  work.absorbed = work.delivered - work.reflected - work.mirrored - work.through;
   if (timed) work.seconds_accumulating = Seconds(accumulated);
   return work;
 }

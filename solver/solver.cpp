@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "scene/opposite_nodes.h"
 #include "solver/coarse_transport.h"
 #include "solver/exposure.h"
 #include "solver/hash.h"
@@ -88,6 +90,10 @@ class ProgressiveSolver {
     }
     s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, degrees);
     s_.hidden.assign(s_.mesh.node_count(), 0);
+    const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
+    if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
+      opposite_ = OppositeNodes(s_.mesh, s_.scene);
+    }
     received_.assign(s_.mesh.node_count(), 0.0f);
     for (const auto& e : emitters_) {
       emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
@@ -255,6 +261,7 @@ class ProgressiveSolver {
   // unshot = total - all that was ever shot. What was shot ahead is so taken back. In node order: sums do not
   // depend on threads.
   void Commit(int step, const std::vector<std::array<float, 3>>& ahead, uint32_t shooters) {
+    PassThrough();
     Ledger& ledger = s_.ledger;
     double unshot = 0;
     for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
@@ -282,7 +289,7 @@ class ProgressiveSolver {
       ledger.absorbed += r.absorbed.cast<double>() * area;
       (by_links_ ? ledger.passed_on : ledger.mirrored) += r.mirrored.cast<double>() * area;
       ledger.reflected += flux * area;
-      ledger.truncated += (r.reflected.cast<double>() - flux) * area;
+      ledger.truncated += ((r.reflected + r.through).cast<double>() - flux) * area;
       // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
       unshot += s_.unshot.Flux(n).cast<double>().abs().sum() * area;
       if (TimeSplit* split = control_.time_split) {
@@ -302,6 +309,19 @@ class ProgressiveSolver {
     record.shooters = shooters;
     s_.history.push_back(record);
     Report(step, 1.0);
+  }
+
+  // What arrived on one side of a translucent sheet leaves the other, in every direction alike.
+  void PassThrough() {
+    for (uint32_t n = 0; n < opposite_.size(); ++n) {
+      const uint32_t from = opposite_[n];
+      if (from == kNone) continue;
+      const int count = gained_.degrees(n).base_count();
+      for (int c = 0; c < 3; ++c) {
+        // Of radiance flux / pi, as the coefficient of the constant function 1 / sqrt(2 pi).
+        gained_.base(n)[c * count] += got_[from].through[c] * std::sqrt(2.0f / std::numbers::pi_v<float>);
+      }
+    }
   }
 
   // The ledger's entries that follow from what has been shot in all, total - unshot.
@@ -349,7 +369,7 @@ class ProgressiveSolver {
   std::vector<MaterialLobes> materials_;
   std::unique_ptr<Links> links_;
   std::unique_ptr<CoarseTransport> coarse_;
-  std::vector<uint32_t> opposite_;
+  std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none
   std::vector<double> area_;
   std::vector<float> received_;  // per node: irradiance so far, summed over channels
   NodeLobes shooting_, gained_;
