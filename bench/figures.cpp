@@ -14,6 +14,8 @@
 #include <tbb/global_control.h>
 
 #include "scene/gltf_scene.h"
+#include "scene/refine.h"
+#include "scene/sample_points.h"
 #include "sh/lobe.h"
 #include "sh/zernike.h"
 #include "solver/exposure.h"
@@ -534,6 +536,31 @@ void Split() {
   }
 }
 
+// --- mesh ------------------------------------------------------------------------------------------------
+
+// A box of one and a half million elements, some of them asked for by chance.
+void RefinementSpeed() {
+  const Scene scene = ReadGltfScene(kTests + "/scenes/cornell_diffuse.glb");
+  const TessellateOptions options{.max_edge = 0.035f};
+  const double start = CpuSeconds();
+  const Mesh mesh = Tessellate(scene, options);
+  std::printf("Tessellate: %zu elements, %.2f CPU s\n\n", mesh.element_count(), CpuSeconds() - start);
+  std::printf("| asked for | elements after | RefineMesh, CPU s | us per element | of it sample points |\n");
+  std::printf("|---|---|---|---|---|\n");
+  for (const double share : {0.0, 0.01, 0.1, 1.0}) {
+    std::vector<float> priority(mesh.element_count());
+    RandomStream random(Mix(1));
+    for (float& p : priority) p = random.Next() < share ? 1.0f : 0.0f;
+    const double t0 = CpuSeconds();
+    Refinement r = RefineMesh(scene, mesh, priority, options, size_t{1} << 30);
+    const double t1 = CpuSeconds();
+    PlaceSamplePoints(&r.mesh, options.border_inset);
+    const double t2 = CpuSeconds(), count = double(r.mesh.element_count());
+    std::printf("| %g %% | %.0f | %.2f | %.2f | %.2f |\n", 100 * share, count, t1 - t0,
+                1e6 * (t1 - t0) / count, 1e6 * (t2 - t1) / count);
+  }
+}
+
 const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"basis", Basis},
                                                                             {"degree", Degree},
                                                                             {"flux", Flux},
@@ -549,7 +576,8 @@ const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"ba
                                                                             {"lobe-error", LobeError},
                                                                             {"residual", Residual},
                                                                             {"accumulation", Accumulation},
-                                                                            {"split", Split}};
+                                                                            {"split", Split},
+                                                                            {"refinement", RefinementSpeed}};
 
 }  // namespace
 }  // namespace lobe

@@ -41,11 +41,15 @@ Mesh::Location Mesh::Locate(uint32_t face, Side side, float u, float v) const {
 }
 
 float Mesh::ElementArea(uint32_t element) const {
+  return static_cast<float>(0.5 * ElementCross(element).norm());
+}
+
+Vec3d Mesh::ElementCross(uint32_t element) const {
   const std::array<uint32_t, 3>& e = elements[element];
   const Vec3d p = node_position[e[0]].cast<double>();
   const Vec3d a = node_position[e[1]].cast<double>() - p;
   const Vec3d b = node_position[e[2]].cast<double>() - p;
-  return static_cast<float>(0.5 * a.cross(b).norm());
+  return a.cross(b);
 }
 
 }  // namespace lobe

@@ -57,6 +57,8 @@ struct Mesh {
   Location Locate(uint32_t face, Side side, float u, float v) const;
 
   float ElementArea(uint32_t element) const;
+  /// Twice the area times the geometric normal, on the patch's side.
+  Vec3d ElementCross(uint32_t element) const;
 };
 
 /// Corners of the two children of a cell.

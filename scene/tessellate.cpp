@@ -10,6 +10,7 @@
 
 #include "scene/bisection.h"
 #include "scene/input_error.h"
+#include "scene/sample_points.h"
 #include "scene/weld.h"
 
 namespace lobe {
@@ -177,7 +178,7 @@ std::vector<std::vector<uint32_t>> ConnectedPieces(const Bisection& bisection, s
 /// nodes in the order elements meet them.
 class Layout {
  public:
-  Layout(Mesh* mesh, const TessellateOptions& options) : mesh_(*mesh), options_(options) {}
+  explicit Layout(Mesh* mesh) : mesh_(*mesh) {}
 
   void Append(const Scene& scene, const Group& group, const Bisection& bisection) {
     node_of_vertex_.assign(bisection.position.size(), kNone);
@@ -189,7 +190,6 @@ class Layout {
       patch.side = group[piece[0]].side;
       patch.node_begin = static_cast<uint32_t>(mesh_.node_count());
       patch.element_begin = static_cast<uint32_t>(mesh_.element_count());
-      border_.clear();
       for (uint32_t root : piece) {
         const FaceSide& s = group[root];
         mesh_.roots[2 * size_t{s.face} + static_cast<size_t>(s.side)] = AppendTree(bisection, root);
@@ -199,7 +199,7 @@ class Layout {
       const uint32_t index = static_cast<uint32_t>(mesh_.patches.size());
       mesh_.node_patch.resize(patch.node_end, index);
       mesh_.element_patch.resize(patch.element_end, index);
-      FinishNodes(&patch);
+      FinishNormals(&patch);
       mesh_.patches.push_back(patch);
     }
   }
@@ -238,7 +238,6 @@ class Layout {
         node = static_cast<uint32_t>(mesh_.node_count());
         mesh_.node_position.push_back(bisection.position[vertices[k]]);
         mesh_.node_normal.push_back(bisection.normal[vertices[k]]);
-        border_.push_back(bisection.border[vertices[k]]);
       }
       nodes[k] = node;
     }
@@ -246,77 +245,18 @@ class Layout {
     return static_cast<uint32_t>(mesh_.elements.size() - 1);
   }
 
-  /// Twice the area times the geometric normal, on the patch's side.
-  Vec3d ElementCross(uint32_t element) const {
-    const auto& e = mesh_.elements[element];
-    const Vec3d p = mesh_.node_position[e[0]].cast<double>();
-    return (mesh_.node_position[e[1]].cast<double>() - p).cross(mesh_.node_position[e[2]].cast<double>() - p);
-  }
-
-  Vec3d Centroid(uint32_t element) const {
-    Vec3d sum = Vec3d::Zero();
-    for (uint32_t n : mesh_.elements[element]) sum += mesh_.node_position[n].cast<double>();
-    return sum / 3;
-  }
-
-  /// Unit shading normals, and where nodes gather light.
-  void FinishNodes(Mesh::Patch* patch) {
-    const uint32_t begin = patch->node_begin, count = patch->node_end - begin;
-    struct Surround {
-      Vec3d cross = Vec3d::Zero(), centroids = Vec3d::Zero();
-      int elements = 0;
-      bool flat = true;
-      double best = -1;  // of a border node on a curved surface, see below
-    };
-    std::vector<Surround> around(count);
-    for (uint32_t e = patch->element_begin; e < patch->element_end; ++e) {
-      const Vec3d cross = ElementCross(e), centroid = Centroid(e);
-      for (uint32_t n : mesh_.elements[e]) {
-        around[n - begin].cross += cross;
-        around[n - begin].centroids += centroid;
-        ++around[n - begin].elements;
-      }
-    }
-    for (Surround& s : around) s.cross.normalize();
-    for (uint32_t e = patch->element_begin; e < patch->element_end; ++e) {
-      const Vec3d normal = ElementCross(e).normalized();
-      for (uint32_t n : mesh_.elements[e]) {
-        // Coplanar up to the rounding of small elements' corners.
-        if (!(normal.dot(around[n - begin].cross) > 1 - 1e-6)) around[n - begin].flat = false;
-      }
-    }
-
-    mesh_.node_sample_position.resize(patch->node_end);
-    mesh_.node_sample_normal.resize(patch->node_end);
+  /// Unit shading normals on the patch's side.
+  void FinishNormals(Mesh::Patch* patch) {
+    const uint32_t begin = patch->node_begin;
+    const std::vector<Vec3d> mean_normal = MeanNormals(mesh_, *patch);
     for (uint32_t n = begin; n < patch->node_end; ++n) {
-      const Surround& s = around[n - begin];
       Vec3& normal = mesh_.node_normal[n];
-      const Vec3 average = s.cross.cast<float>();
+      const Vec3 mean = mean_normal[n - begin].cast<float>();
+      const bool has_mean = !mean.isZero(0);
       normal.normalize();
       // Interpolation between normals that oppose each other ends anywhere.
-      if (!normal.allFinite() || (average.allFinite() && normal.dot(average) <= 0)) normal = average;
-      if (!normal.allFinite()) normal = Vec3::UnitZ();
-
-      const Vec3d p = mesh_.node_position[n].cast<double>();
-      Vec3d sample = p;
-      if (border_[n - begin]) sample += options_.border_inset * (s.centroids / s.elements - p);
-      mesh_.node_sample_position[n] = sample.cast<float>();
-      mesh_.node_sample_normal[n] = average.allFinite() ? average : normal;
-    }
-    // On a curved surface the way to the mean of the centroids leaves the surface, on a convex one
-    // into the solid. There the node goes into the one element that lies most in that direction.
-    for (uint32_t e = patch->element_begin; e < patch->element_end; ++e) {
-      const Vec3d centroid = Centroid(e);
-      for (uint32_t n : mesh_.elements[e]) {
-        Surround& s = around[n - begin];
-        if (!border_[n - begin] || s.flat) continue;
-        const Vec3d p = mesh_.node_position[n].cast<double>();
-        const double towards = (centroid - p).normalized().dot((s.centroids / s.elements - p).normalized());
-        if (towards <= s.best) continue;
-        s.best = towards;
-        mesh_.node_sample_position[n] = (p + options_.border_inset * (centroid - p)).cast<float>();
-        mesh_.node_sample_normal[n] = ElementCross(e).normalized().cast<float>();
-      }
+      if (has_mean && !(normal.dot(mean) > 0)) normal = mean;
+      if (!normal.allFinite() || normal.isZero(0)) normal = Vec3::UnitZ();
     }
     patch->planar = true;
     for (uint32_t n = begin; n < patch->node_end; ++n) {
@@ -325,9 +265,7 @@ class Layout {
   }
 
   Mesh& mesh_;
-  const TessellateOptions& options_;
   std::vector<uint32_t> node_of_vertex_;
-  std::vector<uint8_t> border_;  // per node of the patch at hand
 };
 
 }  // namespace
@@ -345,8 +283,9 @@ Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std:
 
   Mesh mesh;
   mesh.roots.assign(2 * scene.faces.size(), kNone);
-  Layout layout(&mesh, options);
+  Layout layout(&mesh);
   for (const Group& group : groups) layout.Append(scene, group, BisectGroup(scene, bounds, group, options));
+  PlaceSamplePoints(&mesh, options.border_inset);
   return mesh;
 }
 

@@ -7,6 +7,7 @@
 #include "scene/gltf_nodes.h"
 #include "scene/gltf_scene.h"
 #include "scene/input_error.h"
+#include "scene/sample_points.h"
 #include "sh/hemisphere_basis.h"
 #include "solver/solution.h"
 #include "solver/solution_json.h"
@@ -168,9 +169,7 @@ class SolutionReader {
       ReadTrees(p);
       ReadHidden(p);
     }
-    // Sampling is over; whoever samples again (resuming) makes its own from the mesh.
-    s_.mesh.node_sample_position = s_.mesh.node_position;
-    s_.mesh.node_sample_normal = s_.mesh.node_normal;
+    PlaceSamplePoints(&s_.mesh, s_.options.mesh.border_inset);
   }
 
   void ReadGeometry(uint32_t p) {

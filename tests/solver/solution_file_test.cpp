@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/input_error.h"
+#include "scene/refine.h"
 #include "solver/baked_colours.h"
+#include "tests/support/mesh_laws.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/scratch_folder.h"
 
@@ -19,6 +21,7 @@ namespace {
 
 using nlohmann::json;
 using test::ReadWholeFile;
+using test::SameBits;
 using test::SceneBuilder;
 using test::ScratchFolder;
 using test::WriteWholeFile;
@@ -104,11 +107,24 @@ void FillRandomly(NodeLobes* lobes, std::mt19937* random) {
   }
 }
 
-Solution MakeSolution(const Scene& scene, const std::vector<bool>& sides = {}) {
+void FillLobes(Solution* s) {
   std::mt19937 random(7);
+  std::vector<PartDegrees> degrees;
+  for (const Mesh::Patch& patch : s->mesh.patches)
+    degrees.push_back(DegreesOf(s->scene.materials[patch.material]));
+  s->total = s->direct = s->unshot = NodeLobes(s->mesh, degrees);
+  FillRandomly(&s->total, &random);
+  FillRandomly(&s->direct, &random);
+  FillRandomly(&s->unshot, &random);
+  s->hidden.assign(s->mesh.node_count(), 0);
+  for (size_t i = 3; i < s->hidden.size() / 2; i += 17) s->hidden[i] = 1;
+}
+
+Solution MakeSolution(const Scene& scene, const std::vector<bool>& sides = {}) {
   Solution s;
   s.scene = scene;
   s.options.mesh.max_edge = 0.37f;
+  s.options.mesh.border_inset = 0.07f;  // not the default
   s.options.lobes.error = 0.1;
   s.options.lobes.force_l_max = 5;
   s.options.light_samples = 33;
@@ -116,15 +132,7 @@ Solution MakeSolution(const Scene& scene, const std::vector<bool>& sides = {}) {
   s.options.max_seconds = 12.25;
   s.options.seed = 0xfedcba9876543210u;
   s.mesh = Tessellate(scene, s.options.mesh, sides);
-  std::vector<PartDegrees> degrees;
-  for (const Mesh::Patch& patch : s.mesh.patches)
-    degrees.push_back(DegreesOf(scene.materials[patch.material]));
-  s.total = s.direct = s.unshot = NodeLobes(s.mesh, degrees);
-  FillRandomly(&s.total, &random);
-  FillRandomly(&s.direct, &random);
-  FillRandomly(&s.unshot, &random);
-  s.hidden.assign(s.mesh.node_count(), 0);
-  for (size_t i = 3; i < s.hidden.size() / 2; i += 17) s.hidden[i] = 1;
+  FillLobes(&s);
   const GlossKind kinds[] = {GlossKind::kNone, GlossKind::kLobe, GlossKind::kSharp, GlossKind::kMirror};
   for (size_t m = 0; m < scene.materials.size(); ++m) {
     s.material_kinds.push_back(kinds[m % 4]);
@@ -150,11 +158,6 @@ Solution EveryKindOfSolution() {
     sides[2 * f + 1] = scene.materials[scene.faces[f].material].double_sided;
   }
   return MakeSolution(scene, sides);
-}
-
-template <typename T>
-bool SameBits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
 void ExpectSameBits(const NodeLobes& a, const NodeLobes& b) {
@@ -189,23 +192,27 @@ TEST(SolutionFileTest, MeshAndSceneComeBackBitForBit) {
   EXPECT_TRUE(SameBits(s.scene.normals, r.scene.normals));
   EXPECT_TRUE(SameBits(s.scene.faces, r.scene.faces));
   EXPECT_EQ(s.scene.surface_names, r.scene.surface_names);
-  EXPECT_TRUE(SameBits(s.mesh.node_position, r.mesh.node_position));
-  EXPECT_TRUE(SameBits(s.mesh.node_normal, r.mesh.node_normal));
-  EXPECT_TRUE(SameBits(s.mesh.elements, r.mesh.elements));
-  EXPECT_EQ(s.mesh.node_patch, r.mesh.node_patch);
-  EXPECT_EQ(s.mesh.element_patch, r.mesh.element_patch);
-  ASSERT_EQ(s.mesh.patches.size(), r.mesh.patches.size());
-  for (size_t p = 0; p < s.mesh.patches.size(); ++p) {
-    const Mesh::Patch &a = s.mesh.patches[p], &b = r.mesh.patches[p];
-    EXPECT_EQ(a.material, b.material);
-    EXPECT_EQ(a.surface, b.surface);
-    EXPECT_EQ(a.side, b.side);
-    EXPECT_EQ(a.planar, b.planar);
-    EXPECT_EQ(a.node_begin, b.node_begin);
-    EXPECT_EQ(a.node_end, b.node_end);
-    EXPECT_EQ(a.element_begin, b.element_begin);
-    EXPECT_EQ(a.element_end, b.element_end);
+  test::ExpectSameMesh(s.mesh, r.mesh);
+}
+
+TEST(SolutionFileTest, ARefinedMeshComesBackBitForBitAndRefinesAlike) {
+  Solution s = EveryKindOfSolution();
+  std::mt19937 random(5);
+  const auto every_fifth = [&random](const Mesh& mesh) {
+    std::vector<float> priority(mesh.element_count());
+    for (float& p : priority) p = random() % 5 == 0 ? 1.0f : 0.0f;
+    return priority;
+  };
+  for (int i = 0; i < 3; ++i) {
+    s.mesh = RefineMesh(s.scene, s.mesh, every_fifth(s.mesh), s.options.mesh, size_t{1} << 20).mesh;
   }
+  FillLobes(&s);
+  const Solution r = RoundTrip(s);
+  test::ExpectSameMesh(s.mesh, r.mesh);
+  ExpectSameBits(s.total, r.total);
+  const std::vector<float> priority = every_fifth(s.mesh);
+  test::ExpectSameMesh(RefineMesh(s.scene, s.mesh, priority, s.options.mesh, size_t{1} << 20).mesh,
+                       RefineMesh(r.scene, r.mesh, priority, r.options.mesh, size_t{1} << 20).mesh);
 }
 
 TEST(SolutionFileTest, PointsOfFacesAreFoundInTheSameElements) {
