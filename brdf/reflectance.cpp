@@ -18,6 +18,12 @@ Rgb FresnelAtHalf(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) 
   return m.Fresnel(float(std::abs(wi.dot((wi + wo).normalized()))));
 }
 
+// What the coat lets through to what is under it.
+Rgb UnderCoat(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) {
+  const Rgb fresnel = FresnelAtHalf(m, wi, wo);
+  return m.has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
+}
+
 // Which part of each model is smooth ("base") and which is the coat ("gloss").
 struct Base {
   const Vec3d &wi, &wo;
@@ -26,9 +32,7 @@ struct Base {
   Rgb operator()(const Phong&) const { return Rgb::Zero(); }
   Rgb operator()(const Ward&) const { return Rgb::Zero(); }
   Rgb operator()(const MetallicRoughness& m) const {
-    const Rgb fresnel = FresnelAtHalf(m, wi, wo);
-    const Rgb weight = m.has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
-    return m.DiffuseColor() * weight / float(kPi);
+    return m.DiffuseColor() * (1.0f - m.diffuse_transmission) * UnderCoat(m, wi, wo) / float(kPi);
   }
 };
 
@@ -82,6 +86,18 @@ Rgb EvaluateBase(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
 
 Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
   return AboveHorizon(wi, wo) ? std::visit(Gloss{wi, wo}, r) : Rgb::Zero();
+}
+
+Rgb EvaluateTransmission(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
+  const auto* m = std::get_if<MetallicRoughness>(&r);
+  if (!m || !(wi.z() > 0 && wo.z() < 0)) return Rgb::Zero();
+  const Rgb color = m->diffuse_transmission_color * m->diffuse_transmission * (1.0f - m->metallic);
+  return color * UnderCoat(*m, Vec3d(wi.x(), wi.y(), -wi.z()), wo) / float(kPi);
+}
+
+bool Transmits(const Reflectance& r) {
+  const auto* m = std::get_if<MetallicRoughness>(&r);
+  return m && m->diffuse_transmission * (1.0f - m->metallic) > 0;
 }
 
 double GgxD(double cos_h, double alpha) {

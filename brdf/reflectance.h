@@ -32,7 +32,8 @@ struct Ward {
   float alpha = 0.2f;
 };
 
-/// glTF 2.0 metallic-roughness, appendix B.3.5, with KHR_materials_specular and KHR_materials_ior.
+/// glTF 2.0 metallic-roughness, appendix B.3.5, with KHR_materials_specular, KHR_materials_ior and
+/// KHR_materials_diffuse_transmission.
 struct MetallicRoughness {
   Rgb base_color = Rgb::Constant(1);
   float metallic = 1;
@@ -41,6 +42,9 @@ struct MetallicRoughness {
   float specular = 1;
   Rgb specular_color = Rgb::Constant(1);
   bool has_specular = false;  ///< KHR_materials_specular present: diffuse weight 1 - max F, else 1 - F
+  /// Fraction of the light under the coat that leaves a thin sheet on its other side, and its colour.
+  float diffuse_transmission = 0;
+  Rgb diffuse_transmission_color = Rgb::Constant(1);
 
   Rgb DiffuseColor() const;  ///< c_diff
   Rgb F0() const;            ///< reflectance of the coat at normal incidence
@@ -58,6 +62,11 @@ inline constexpr float kMirrorRoughness = 0.01f;
 Rgb EvaluateBase(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
 /// The coat. Zero for Lambert and for an ideal mirror, whose reflection is a delta.
 Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
+
+/// Light that passes through a thin sheet: `wi` above the surface, `wo` on the other side, z < 0. 0 otherwise.
+/// The coat's Fresnel is that of the half vector between wo and wi mirrored into wo's side.
+Rgb EvaluateTransmission(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
+bool Transmits(const Reflectance& r);
 
 /// GGX distribution (Walter et al., EGSR 2007, eq. 33) at half-vector cosine `cos_h`, sr^-1.
 double GgxD(double cos_h, double alpha);
