@@ -99,16 +99,6 @@ void CheckSize(const Scene& scene, const Eigen::AlignedBox3f& bounds, const std:
   }
 }
 
-/// Shading normal at a corner of a face, on the front: one that points behind the face is turned, one that
-/// lies in its plane replaced.
-Vec3 CornerNormal(const Scene& scene, const Face& face, int k, const Vec3& geometric) {
-  constexpr float kGrazing = 1e-3f;  // chosen
-  const Vec3& normal = scene.normals[face.vertex[k]];
-  const float cosine = normal.dot(geometric);
-  if (!(std::abs(cosine) > kGrazing)) return geometric;
-  return cosine > 0 ? normal : Vec3(-normal);
-}
-
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
                       const TessellateOptions& options) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
@@ -116,9 +106,8 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
   triangles.reserve(group.size());
   for (const FaceSide& s : group) {
     const Face& face = scene.faces[s.face];
-    const Vec3 geometric = scene.GeometricNormal(face);
     std::array<Vec3, 3> position = scene.Corners(face), normal;
-    for (int k = 0; k < 3; ++k) normal[k] = CornerNormal(scene, face, k, geometric);
+    for (int k = 0; k < 3; ++k) normal[k] = scene.CornerNormal(face, k);
     if (s.side == Side::kBack) {
       std::swap(position[1], position[2]);
       std::swap(normal[1], normal[2]);

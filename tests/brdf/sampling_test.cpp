@@ -11,6 +11,7 @@
 #include "brdf/hemisphere_integral.h"
 #include "tests/support/brdf_laws.h"
 #include "tests/support/direction_chi_square.h"
+#include "tests/support/significance.h"
 
 namespace lobe {
 namespace {
@@ -152,8 +153,7 @@ TEST(ReflectanceSamplerTest, DensityIntegratesToOneWithoutLoss) {
 TEST(ReflectanceSamplerTest, MeanWeightIsTheDirectionalAlbedo) {
   constexpr int kSamples = 40000;
   const double tests = double(Models().size() * kAngles.size() * 3);
-  // Normal quantile of Sidak's level for these many tests, two-sided.
-  const double worst_z = -boost::math::quantile(boost::math::normal(), 0.5 * test::SidakLevel(0.01, tests));
+  const double worst_z = test::SidakQuantile(0.01, tests);
   for (const Reflectance& r : Models()) {
     const ReflectanceSampler sampler(r);
     double width = 1;

@@ -8,16 +8,11 @@
 #include <vector>
 
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 
 #include "sh/quadrature.h"
 #include "sh/vector.h"
 
 namespace lobe::test {
-
-/// Significance of each of `tests` independent tests such that all together cry wolf with chance
-/// `family` (Sidak).
-inline double SidakLevel(double family, double tests) { return -std::expm1(std::log1p(-family) / tests); }
 
 /// Pearson's chi-square test of sampled directions against the density they claim, over the whole sphere.
 /// Cells have equal steps in theta and phi; the density is integrated over each by adaptive
