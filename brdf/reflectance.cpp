@@ -18,8 +18,8 @@ Rgb FresnelAtHalf(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) 
   return m.Fresnel(float(std::abs(wi.dot((wi + wo).normalized()))));
 }
 
-// What the coat lets through to what is under it.
-Rgb UnderCoat(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) {
+// What the coat lets through to the base and back out again.
+Rgb UnderTheCoat(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) {
   const Rgb fresnel = FresnelAtHalf(m, wi, wo);
   return m.has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
 }
@@ -32,7 +32,7 @@ struct Base {
   Rgb operator()(const Phong&) const { return Rgb::Zero(); }
   Rgb operator()(const Ward&) const { return Rgb::Zero(); }
   Rgb operator()(const MetallicRoughness& m) const {
-    return m.DiffuseColor() * (1.0f - m.diffuse_transmission) * UnderCoat(m, wi, wo) / float(kPi);
+    return m.DiffuseColor() * UnderTheCoat(m, wi, wo) / float(kPi);
   }
 };
 
@@ -64,7 +64,13 @@ struct Gloss {
 
 }  // namespace
 
-Rgb MetallicRoughness::DiffuseColor() const { return base_color * (1.0f - metallic); }
+Rgb MetallicRoughness::DiffuseColor() const {
+  return base_color * ((1.0f - metallic) * (1.0f - diffuse_transmission));
+}
+
+Rgb MetallicRoughness::TransmissionColor() const {
+  return diffuse_transmission_color * ((1.0f - metallic) * diffuse_transmission);
+}
 
 Rgb MetallicRoughness::F0() const {
   // Also right for KHR_materials_ior's "ior 0", which asks for f0 = 1.
@@ -90,14 +96,18 @@ Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
 
 Rgb EvaluateTransmission(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
   const auto* m = std::get_if<MetallicRoughness>(&r);
-  if (!m || !(wi.z() > 0 && wo.z() < 0)) return Rgb::Zero();
-  const Rgb color = m->diffuse_transmission_color * m->diffuse_transmission * (1.0f - m->metallic);
-  return color * UnderCoat(*m, Vec3d(wi.x(), wi.y(), -wi.z()), wo) / float(kPi);
+  const Vec3d mirrored(wo.x(), wo.y(), -wo.z());
+  if (!m || !AboveHorizon(wi, mirrored)) return Rgb::Zero();
+  return m->TransmissionColor() * UnderTheCoat(*m, wi, mirrored) / float(kPi);
 }
 
 bool Transmits(const Reflectance& r) {
   const auto* m = std::get_if<MetallicRoughness>(&r);
-  return m && m->diffuse_transmission * (1.0f - m->metallic) > 0;
+  if (!m) return false;
+  // F0 <= F90, so that a coat that reflects everything at normal incidence does so at every angle.
+  const Rgb f0 = m->F0();
+  const Rgb through = m->has_specular ? Rgb::Constant(1.0f - f0.maxCoeff()) : Rgb(1.0f - f0);
+  return (m->TransmissionColor() * through > 0).any();
 }
 
 double GgxD(double cos_h, double alpha) {

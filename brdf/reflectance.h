@@ -33,7 +33,7 @@ struct Ward {
 };
 
 /// glTF 2.0 metallic-roughness, appendix B.3.5, with KHR_materials_specular, KHR_materials_ior and
-/// KHR_materials_diffuse_transmission.
+/// KHR_materials_diffuse_transmission (a thin translucent sheet: paper, a lampshade, a leaf).
 struct MetallicRoughness {
   Rgb base_color = Rgb::Constant(1);
   float metallic = 1;
@@ -42,13 +42,15 @@ struct MetallicRoughness {
   float specular = 1;
   Rgb specular_color = Rgb::Constant(1);
   bool has_specular = false;  ///< KHR_materials_specular present: diffuse weight 1 - max F, else 1 - F
-  /// Fraction of the light under the coat that leaves a thin sheet on its other side, and its colour.
+  /// Share of the light under the coat that a dielectric passes on to the other side instead of
+  /// reflecting it, 0..1.
   float diffuse_transmission = 0;
   Rgb diffuse_transmission_color = Rgb::Constant(1);
 
-  Rgb DiffuseColor() const;  ///< c_diff
-  Rgb F0() const;            ///< reflectance of the coat at normal incidence
-  float F90() const;         ///< and at grazing
+  Rgb DiffuseColor() const;       ///< c_diff, of it what stays on this side
+  Rgb TransmissionColor() const;  ///< what c_diff is for the other side
+  Rgb F0() const;                 ///< reflectance of the coat at normal incidence
+  float F90() const;              ///< and at grazing
   /// Schlick: f0 + (f90 - f0)(1 - cos)^5.
   Rgb Fresnel(float cos_theta) const;
 };
@@ -63,9 +65,12 @@ Rgb EvaluateBase(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
 /// The coat. Zero for Lambert and for an ideal mirror, whose reflection is a delta.
 Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
 
-/// Light that passes through a thin sheet: `wi` above the surface, `wo` on the other side, z < 0. 0 otherwise.
-/// The coat's Fresnel is that of the half vector between wo and wi mirrored into wo's side.
+/// Lambertian transmission under the coat, f_t in sr^-1 without the cosine: light arrives along `wi`, above
+/// the surface (z > 0), and leaves along `wo`, below it (z < 0); 0 for any other pair. Weighed by the coat as
+/// EvaluateBase is, at the half vector of `wi` and `wo` mirrored to z > 0, so that it is reciprocal: the way
+/// back, told in the frame of the other side, has the same value.
 Rgb EvaluateTransmission(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
+/// Does EvaluateTransmission differ from 0 anywhere?
 bool Transmits(const Reflectance& r);
 
 /// GGX distribution (Walter et al., EGSR 2007, eq. 33) at half-vector cosine `cos_h`, sr^-1.
