@@ -108,10 +108,43 @@ Vec3 PathTracer::ShadingNormal(const RayHit& hit, const FaceShade& face) const {
   return hit.side == Side::kFront ? normal : Vec3(-normal);
 }
 
+// Where a path scatters.
+struct PathTracer::Vertex {
+  Vec3 position, normal;  // of the face, on the vertex's side
+  Frame frame;            // about the shading normal
+  Vec3 wo_local;
+  const ReflectanceSampler& sampler;
+};
+
+Rgb PathTracer::LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const {
+  const FaceShade& lamp = faces_[lamps_[choose_lamp_.Draw(random.NextBits())]];
+  float u = random.Next(), v = random.Next();
+  FoldSquare(&u, &v);
+  const Vec3 target = lamp.corner + u * lamp.edge1 + v * lamp.edge2;
+  const Vec3 way = target - vertex.position;
+  const float distance2 = way.squaredNorm(), towards = -lamp.normal.dot(way);
+  if (!(distance2 > 0) || towards == 0 || !lamp.emits[towards < 0]) return Rgb::Zero();
+
+  const float distance = std::sqrt(distance2);
+  const Vec3 wi = way / distance, wi_local = vertex.frame.ToLocal(wi);
+  const float above = wi.dot(vertex.normal);
+  if (!(above * wi_local.z() > 0) || (above < 0 && !vertex.sampler.transmits())) return Rgb::Zero();
+  const ReflectanceValue value = vertex.sampler.Evaluate(vertex.wo_local, wi_local);
+  if (!(value.f > 0).any()) return Rgb::Zero();
+
+  const Vec3 from = vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above);
+  const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
+  ++*traced;
+  if (tracer_.Occluded({from, 0, to - from, 1})) return Rgb::Zero();
+  const float light_pdf = lamp.light_density * distance2 * distance / std::abs(towards);
+  const float weight =
+      options_.light_sampling == LightSampling::kBoth ? PowerWeight(light_pdf, value.pdf) : 1;
+  return value.f * surfaces_[lamp.material].emission * (weight * std::abs(wi_local.z()) / light_pdf);
+}
+
 Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emission,
                      const ReflectanceSampler* first, RandomStream& random, uint64_t* rays) const {
   const bool by_light = options_.light_sampling != LightSampling::kDirections && !lamps_.empty();
-  const bool by_direction = options_.light_sampling != LightSampling::kLights;
   Rgb radiance = Rgb::Zero(), throughput = Rgb::Constant(1);
   RayHit hit = start;
   Vec3 wo = wo_start;
@@ -127,7 +160,7 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
       float weight = 1;
       if (direction_pdf > 0 && by_light) {
         const float light_pdf = face.light_density * hit.t * hit.t / std::abs(face.normal.dot(wo));
-        weight = by_direction ? PowerWeight(direction_pdf, light_pdf) : 0;
+        weight = options_.light_sampling == LightSampling::kBoth ? PowerWeight(direction_pdf, light_pdf) : 0;
       }
       radiance += throughput * (weight * surface.emission);
     }
@@ -144,39 +177,11 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
         shading_normal = (shading_normal + (kLeastCosine - cosine) * wo).normalized();
     }
     const Frame frame(shading_normal);
-    const Vec3 wo_local = frame.ToLocal(wo);
-
-    if (by_light) {
-      const FaceShade& lamp = faces_[lamps_[choose_lamp_.Draw(random.NextBits())]];
-      float u = random.Next(), v = random.Next();
-      FoldSquare(&u, &v);
-      const Vec3 target = lamp.corner + u * lamp.edge1 + v * lamp.edge2;
-      const Vec3 way = target - position;
-      const float distance2 = way.squaredNorm(), towards = -lamp.normal.dot(way);
-      if (distance2 > 0 && towards != 0 && lamp.emits[towards < 0]) {
-        const float distance = std::sqrt(distance2);
-        const Vec3 wi = way / distance;
-        const float above = wi.dot(normal);
-        const Vec3 wi_local = frame.ToLocal(wi);
-        if (above * wi_local.z() > 0 && (above > 0 || sampler.transmits())) {
-          const ReflectanceValue value = sampler.Evaluate(wo_local, wi_local);
-          if ((value.f > 0).any()) {
-            const Vec3 from = position + normal * std::copysign(tracer_.epsilon(), above);
-            const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
-            ++traced;
-            if (!tracer_.Occluded({from, 0, to - from, 1})) {
-              const float light_pdf = lamp.light_density * distance2 * distance / std::abs(towards);
-              const float weight = by_direction ? PowerWeight(light_pdf, value.pdf) : 1;
-              radiance += throughput * value.f * surfaces_[lamp.material].emission *
-                          (weight * std::abs(wi_local.z()) / light_pdf);
-            }
-          }
-        }
-      }
-    }
+    const Vertex vertex{position, normal, frame, frame.ToLocal(wo), sampler};
+    if (by_light) radiance += throughput * LampLight(vertex, random, &traced);
 
     const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
-    const SampledDirection next = sampler.Sample(wo_local, u1, u2, u3);
+    const SampledDirection next = sampler.Sample(vertex.wo_local, u1, u2, u3);
     if (!(next.pdf > 0)) break;
     throughput *= next.weight;
     Vec3 wi = frame.ToWorld(next.wi);

@@ -90,7 +90,13 @@ class PathTracer {
     bool emits[2] = {false, false};  // by side, if rays can meet that side
   };
 
+  struct Vertex;
+
   Vec3 ShadingNormal(const RayHit& hit, const FaceShade& face) const;
+  // One sample of the light straight from lamps, scattered towards the vertex's wo; weighed against
+  // directions.
+  Rgb LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const;
+  // One path. `first`: how the surface it starts from scatters, if not as its material says.
   Rgb Walk(const RayHit& start, const Vec3& wo, bool count_emission, const ReflectanceSampler* first,
            RandomStream& random, uint64_t* rays) const;
   template <typename Sample>
