@@ -21,10 +21,12 @@ struct SolveFlags {
   std::string scene, output;
   SolveOptions options;
   LobeFlags lobes;
+  double refine_error_percent = 100 * RefineOptions{}.error;
 };
 
 void Validate(SolveFlags& flags) {
   flags.options.lobes = flags.lobes.Options();
+  flags.options.refine.error = flags.refine_error_percent / 100;
   if (const std::string wrong = flags.options.Validate(); !wrong.empty()) throw UsageError(wrong);
   RequireExtension("-o", flags.output, {".glb", ".gltf"});
   RequireOtherFile("-o", flags.output, flags.scene, "the scene");
@@ -131,6 +133,18 @@ void AddSolveCommand(CLI::App& app, Command* command) {
   SolveOptions& o = flags->options;
   solve->add_option("--edge", o.mesh.max_edge, "Longest edge of an element, metres")
       ->type_name("M")
+      ->capture_default_str();
+  solve
+      ->add_option("--refine-error", flags->refine_error_percent,
+                   "Split elements where light bends by more, percent of the brightness there; 0: never")
+      ->type_name("PCT")
+      ->capture_default_str();
+  solve
+      ->add_option("--refine-rounds", o.refine.rounds, "Rounds of splitting; two of them halve an edge")
+      ->type_name("N")
+      ->capture_default_str();
+  solve->add_option("--max-nodes", o.refine.max_nodes, "Split no further beyond so many nodes")
+      ->type_name("N")
       ->capture_default_str();
   flags->lobes.AddTo(solve);
   const std::map<std::string, Transport> transports = {

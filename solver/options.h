@@ -5,6 +5,7 @@
 
 #include "brdf/material_lobes.h"
 #include "scene/tessellate.h"
+#include "solver/refinement.h"
 
 namespace lobe {
 
@@ -18,6 +19,7 @@ const char* Name(Transport transport);
 
 struct SolveOptions {
   TessellateOptions mesh;
+  RefineOptions refine;
   LobeOptions lobes;
   Transport transport = Transport::kAuto;
   /// Links per diffuse node, >= 8; glossy nodes take more, in proportion to the coefficients of their lobes.

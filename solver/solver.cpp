@@ -20,6 +20,7 @@
 #include "solver/link_gather.h"
 #include "solver/links.h"
 #include "solver/losses.h"
+#include "solver/refinement.h"
 #include "solver/shooting.h"
 
 namespace lobe {
@@ -56,7 +57,9 @@ class ProgressiveSolver {
       s_.stop_reason = Iterate();
     } else {
       // Told to stop before emission was through: all of it is still to be shot.
-      for (NodeLobes* lobes : {&s_.total, &s_.direct, &s_.unshot}) lobes->SetZero();
+      gained_.SetZero();
+      s_.total = s_.direct = s_.unshot = gained_;
+      s_.hidden.assign(s_.mesh.node_count(), 0);
       s_.ledger = {};
       s_.stop_reason = WhyStop();
     }
@@ -83,26 +86,54 @@ class ProgressiveSolver {
       s_.material_kinds.push_back(materials_.back().kind());
       s_.material_errors.push_back(materials_.back().gloss.error);
     }
-    std::vector<PartDegrees> degrees;
-    for (const auto& patch : s_.mesh.patches) {
-      const auto& lobes = materials_[patch.material];
-      degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
-    }
-    s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, degrees);
-    s_.hidden.assign(s_.mesh.node_count(), 0);
-    const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
-    if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
-      opposite_ = OppositeNodes(s_.mesh, s_.scene);
-    }
-    received_.assign(s_.mesh.node_count(), 0.0f);
     for (const auto& e : emitters_) {
       emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
     }
   }
 
+  // Straight light of the emitters, on a mesh that is refined until it suits it.
   bool Emission() {
-    const ShootingField field(s_.mesh, emitters_);
-    return GatherShot(0, field, s_.options.light_samples);
+    std::vector<PartDegrees> degrees;
+    for (const auto& patch : s_.mesh.patches) {
+      const auto& lobes = materials_[patch.material];
+      degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
+    }
+    gained_ = NodeLobes(s_.mesh, degrees);
+    const auto shoot = [&](const std::vector<uint32_t>& nodes) {
+      received_.assign(s_.mesh.node_count(), 0.0f);
+      s_.hidden.assign(s_.mesh.node_count(), 0);
+      got_.resize(s_.mesh.node_count());
+      return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
+    };
+    if (!shoot(AllNodes())) return false;
+    const RefineOptions& options = s_.options.refine;
+    Refinement refined;
+    for (int round = 0; round < options.rounds && options.error > 0; ++round) {
+      const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
+      const Roughness roughness(s_.mesh, gained_, area);
+      const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
+                                                     : roughness.AtMidpoints(refined, options.error);
+      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
+      if (refined.made.empty()) break;
+      gained_ = CarryOver(gained_, refined);
+      std::vector<Received> got(refined.mesh.node_count());
+      for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
+      got_ = std::move(got);
+      s_.mesh = std::move(refined.mesh);
+      if (!shoot(refined.made)) return false;
+    }
+    s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
+    const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
+    if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
+      opposite_ = OppositeNodes(s_.mesh, s_.scene);
+    }
+    return true;
+  }
+
+  std::vector<uint32_t> AllNodes() const {
+    std::vector<uint32_t> nodes(s_.mesh.node_count());
+    std::iota(nodes.begin(), nodes.end(), 0u);
+    return nodes;
   }
 
   // Also finds the hidden nodes, and takes from them what emission gave them.
@@ -135,7 +166,7 @@ class ProgressiveSolver {
         const auto gained = gained_.all(n);
         std::copy(gained.begin(), gained.end(), s_.unshot.all(n).begin());
       }
-      std::vector<Received> first = std::move(got_);
+      const std::vector<Received> first = got_;
       if (!GatherLinked(0, LinkField(s_.scene, s_.mesh), 1)) return false;
       for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
         auto gained = gained_.all(n);
@@ -209,15 +240,15 @@ class ProgressiveSolver {
       shooters += std::any_of(shot.begin(), shot.end(), [](float v) { return v != 0; });
     }
     const ShootingField field(s_.scene, s_.mesh, s_.hidden, shooting_);
-    if (!GatherShot(step, field, s_.options.delta_areas)) return false;
+    if (!GatherShot(step, field, s_.options.delta_areas, AllNodes())) return false;
     Commit(step, {}, shooters);
     return true;
   }
 
-  bool GatherShot(int step, const ShootingField& field, int samples) {
+  bool GatherShot(int step, const ShootingField& field, int samples, const std::vector<uint32_t>& nodes) {
     tbb::enumerable_thread_specific<Receiver> receivers(
         [&] { return Receiver(s_.mesh, tracer_, materials_); });
-    return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
+    return ForEach(nodes, step, [&](uint32_t n, float* out, bool timed) {
       return receivers.local().Gather(n, field, samples, received_[n],
                                       Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out, timed);
     });
@@ -226,33 +257,32 @@ class ProgressiveSolver {
   bool GatherLinked(int step, const LinkField& field, int thinning) {
     tbb::enumerable_thread_specific<LinkReceiver> receivers(
         [&] { return LinkReceiver(s_.mesh, *links_, materials_); });
-    return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
+    return ForEach(AllNodes(), step, [&](uint32_t n, float* out, bool timed) {
       return receivers.local().Gather(n, field, thinning, out, timed);
     });
   }
 
-  // gather(node, out, timed) for every node that is not hidden, into gained_ and got_; false if told to
-  // stop, and then nothing else has changed.
+  // gather(node, out, timed) for every one of `nodes` that is not hidden, into gained_ and got_; false if told
+  // to stop, and then nothing else has changed.
   template <typename Gather>
-  bool ForEachNode(int step, const Gather& gather) {
-    const size_t nodes = s_.mesh.node_count();
-    got_.assign(nodes, {});
+  bool ForEach(const std::vector<uint32_t>& nodes, int step, const Gather& gather) {
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes, 16), [&](const tbb::blocked_range<size_t>& range) {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
       if (stop.load(std::memory_order_relaxed)) return;
       if (MustStop()) {
         stop = true;
         return;
       }
-      for (size_t n = range.begin(); n < range.end(); ++n) {
-        auto out = gained_.all(uint32_t(n));
+      for (size_t i = range.begin(); i < range.end(); ++i) {
+        const uint32_t n = nodes[i];
+        auto out = gained_.all(n);
         std::fill(out.begin(), out.end(), 0.0f);
+        got_[n] = {};
         if (s_.hidden[n]) continue;
-        const bool timed = control_.time_split && n % 16 == 0;
-        got_[n] = gather(uint32_t(n), out.data(), timed);
+        got_[n] = gather(n, out.data(), control_.time_split && n % 16 == 0);
       }
-      Report(step, double(done += range.size()) / double(nodes));
+      Report(step, double(done += range.size()) / double(nodes.size()));
     });
     return !stop;
   }

@@ -166,13 +166,17 @@ TEST(ReflectanceSamplerTest, MeanWeightIsTheDirectionalAlbedo) {
       const Vec3d wo_plane(std::sin(theta), 0, std::cos(theta));
       Eigen::Array3d expected = Eigen::Array3d::Zero();
       // Two widths: base and transmission are smooth whatever the gloss.
-      HalfVectorRule{.width = width}.ForEach(wo_plane.z(), [&](const Vec3d& wi, double weight) {
-        expected += (EvaluateGloss(r, wi, wo_plane) * float(wi.z() * weight)).cast<double>();
-      });
-      HalfVectorRule{.width = 1}.ForEach(wo_plane.z(), [&](const Vec3d& wi, double weight) {
-        expected += (EvaluateBase(r, wi, wo_plane) * float(wi.z() * weight)).cast<double>();
+      const auto add = [&](double rule_width, const auto& value) {
+        const OutgoingPoints points = HalfVectorRule{.width = rule_width}.Points(wo_plane.z());
+        for (int i = 0; i < points.size(); ++i) {
+          const Vec3d wi(points.x[i], points.y[i], points.z[i]);
+          expected += (value(wi) * float(wi.z() * points.weight[i])).template cast<double>();
+        }
+      };
+      add(width, [&](const Vec3d& wi) { return EvaluateGloss(r, wi, wo_plane); });
+      add(1, [&](const Vec3d& wi) -> Rgb {
         const Vec3d below(wi.x(), wi.y(), -wi.z());
-        expected += (EvaluateTransmission(r, wo_plane, below) * float(wi.z() * weight)).cast<double>();
+        return EvaluateBase(r, wi, wo_plane) + EvaluateTransmission(r, wo_plane, below);
       });
       if (gltf && gltf->roughness < kMirrorRoughness) expected += gltf->Fresnel(wo.z()).cast<double>();
 
