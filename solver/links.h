@@ -11,6 +11,7 @@
 #include "scene/ray_tracer.h"
 #include "scene/scene.h"
 #include "solver/link_pattern.h"
+#include "solver/planar_mirrors.h"
 
 namespace lobe {
 
@@ -55,8 +56,8 @@ class Links {
     int per_coefficient = 8;
     bool follow_mirrors = true;
     uint64_t seed = 1;
-    /// Does shooting bring an emitter's light by way of this mirror face? Then links leave it out.
-    std::function<bool(uint32_t face)> emission_by_shooting = {};
+    /// By way of these shooting brings light of small emitters: links leave that out.
+    std::vector<PlanarMirror> planar_mirrors = {};
   };
 
   /// Traces all links. `stop` is asked from time to time; if it says so, the object is useless (stopped()).

@@ -14,7 +14,7 @@ struct RefineOptions {
   /// Split where light in the middle of an edge is off the mean of its ends by more than this fraction of the
   /// brightness thereabouts (half that of the place, half the scene's mean); 0: keep the mesh uniform. Finer
   /// meshes cost nodes, about in inverse proportion. Default measured in docs/validation.md#refine.
-  double error = 0.05;
+  double error = 0.10;
   /// Rounds of bisection: two halve the edges. 0 to 16.
   int rounds = 6;
   /// Stop refining beyond so many nodes.

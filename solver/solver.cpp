@@ -20,6 +20,7 @@
 #include "solver/link_gather.h"
 #include "solver/links.h"
 #include "solver/losses.h"
+#include "solver/planar_mirrors.h"
 #include "solver/refinement.h"
 #include "solver/shooting.h"
 
@@ -143,6 +144,8 @@ class ProgressiveSolver {
     options.per_coefficient = by_links_ ? kLinksPerCoefficient : 0;
     options.follow_mirrors = by_links_;
     options.seed = s_.options.seed;
+    if (by_links_) planar_mirrors_ = FindPlanarMirrors(s_.mesh, materials_, emitters_);
+    options.planar_mirrors = planar_mirrors_;
     links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
       Report(0, fraction);
       return MustStop();
@@ -157,26 +160,35 @@ class ProgressiveSolver {
     return true;
   }
 
+  // Light of the emitters by way of mirrors: over one planar mirror by shadow rays to their images, all else
+  // by links.
   bool EmissionByMirrors() {
     const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
       return m.kind() == GlossKind::kMirror;
     });
     if (by_links_ && mirrors) {
-      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
-        const auto gained = gained_.all(n);
-        std::copy(gained.begin(), gained.end(), s_.unshot.all(n).begin());
+      if (!planar_mirrors_.empty()) {
+        const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
+        if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); })) return false;
       }
-      const std::vector<Received> first = got_;
-      if (!GatherLinked(0, LinkField(s_.scene, s_.mesh), 1)) return false;
-      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
-        auto gained = gained_.all(n);
-        auto straight = s_.unshot.all(n);
-        for (size_t i = 0; i < gained.size(); ++i) gained[i] += straight[i];
-        std::fill(straight.begin(), straight.end(), 0.0f);
-        got_[n] += first[n];
-      }
+      if (!AddGathered([&] { return GatherLinked(0, LinkField(s_.scene, s_.mesh), 1); })) return false;
     }
     Commit(0, {}, uint32_t(emitters_.size()));
+    return true;
+  }
+
+  // gather() replaces gained_ and got_; this adds to what they held.
+  template <typename Gather>
+  bool AddGathered(const Gather& gather) {
+    const NodeLobes before = gained_;
+    const std::vector<Received> got_before = got_;
+    if (!gather()) return false;
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+      const auto gained = gained_.all(n);
+      const auto had = before.all(n);
+      for (size_t i = 0; i < gained.size(); ++i) gained[i] += had[i];
+      got_[n] += got_before[n];
+    }
     return true;
   }
 
@@ -397,6 +409,7 @@ class ProgressiveSolver {
   bool by_links_ = true;
   std::vector<Emitter> emitters_;
   std::vector<MaterialLobes> materials_;
+  std::vector<PlanarMirror> planar_mirrors_;
   std::unique_ptr<Links> links_;
   std::unique_ptr<CoarseTransport> coarse_;
   std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "brdf/hemisphere_integral.h"
+#include "tests/support/outgoing_integral.h"
 #include "tests/support/brdf_laws.h"
 #include "tests/support/direction_chi_square.h"
 #include "tests/support/significance.h"
@@ -166,15 +167,9 @@ TEST(ReflectanceSamplerTest, MeanWeightIsTheDirectionalAlbedo) {
       const Vec3d wo_plane(std::sin(theta), 0, std::cos(theta));
       Eigen::Array3d expected = Eigen::Array3d::Zero();
       // Two widths: base and transmission are smooth whatever the gloss.
-      const auto add = [&](double rule_width, const auto& value) {
-        const OutgoingPoints points = HalfVectorRule{.width = rule_width}.Points(wo_plane.z());
-        for (int i = 0; i < points.size(); ++i) {
-          const Vec3d wi(points.x[i], points.y[i], points.z[i]);
-          expected += (value(wi) * float(wi.z() * points.weight[i])).template cast<double>();
-        }
-      };
-      add(width, [&](const Vec3d& wi) { return EvaluateGloss(r, wi, wo_plane); });
-      add(1, [&](const Vec3d& wi) -> Rgb {
+      expected += test::IntegrateOutgoing(width, wo_plane.z(),
+                                          [&](const Vec3d& wi) { return EvaluateGloss(r, wi, wo_plane); });
+      expected += test::IntegrateOutgoing(1, wo_plane.z(), [&](const Vec3d& wi) -> Rgb {
         const Vec3d below(wi.x(), wi.y(), -wi.z());
         return EvaluateBase(r, wi, wo_plane) + EvaluateTransmission(r, wo_plane, below);
       });

@@ -11,6 +11,7 @@
 
 #include "brdf/frame.h"
 #include "brdf/hemisphere_integral.h"
+#include "tests/support/outgoing_integral.h"
 #include "tests/support/polygon_light.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/significance.h"
@@ -133,13 +134,12 @@ TEST(PathTracerTest, EveryModelShowsItsAlbedoInAFurnace) {
     for (const float theta : {0.2f, 0.9f, 1.4f}) {
       const Vec3d wo(std::sin(theta) * std::cos(0.7), std::sin(theta) * std::sin(0.7), std::cos(theta));
       const Vec3d plane(std::sin(theta), 0, std::cos(theta));
-      Rgb expected = Rgb::Zero();
-      HalfVectorRule{.width = width}.ForEach(plane.z(), [&, &m = model](const Vec3d& wi, double weight) {
-        expected += EvaluateGloss(m, wi, plane) * float(wi.z() * weight);
-      });
-      HalfVectorRule{.width = 1}.ForEach(plane.z(), [&, &m = model](const Vec3d& wi, double weight) {
-        expected += EvaluateBase(m, wi, plane) * float(wi.z() * weight);
-      });
+      const auto& m = model;
+      Rgb expected = (test::IntegrateOutgoing(width, plane.z(),
+                                              [&](const Vec3d& wi) { return EvaluateGloss(m, wi, plane); }) +
+                      test::IntegrateOutgoing(1, plane.z(),
+                                              [&](const Vec3d& wi) { return EvaluateBase(m, wi, plane); }))
+                         .cast<float>();
       const auto* gltf = std::get_if<MetallicRoughness>(&model);
       if (gltf && gltf->roughness < kMirrorRoughness) expected += gltf->Fresnel(std::cos(theta));
       for (const auto way : {LightSampling::kBoth, LightSampling::kDirections}) {
