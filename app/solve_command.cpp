@@ -57,9 +57,10 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
   out["residual"] = s.residual();
   out["solve_seconds"] = s.solve_seconds;
   out["cpu_seconds"] = cpu_seconds;
-  out["time_split"] = {{"choosing", split.choosing},
-                       {"rays", split.rays},
-                       {"accumulation", split.accumulation},
+  out["time_split"] = {{"preparation", split.preparation},
+                       {"emission", split.emission},
+                       {"links", split.links},
+                       {"reflection", split.reflection},
                        {"lobe_reads", split.lobe_reads},
                        {"lobe_writes", split.lobe_writes}};
   out["warnings"] = s.scene.warnings;

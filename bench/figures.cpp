@@ -475,70 +475,6 @@ void Accumulation() {
   }
 }
 
-// One thread: gathering emission and the first reflected step, against Embree alone over the very same rays.
-void Split() {
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  std::printf(
-      "| scene | rays | million rays/s, Embree alone | gathering over Embree alone, median of 5 | cutting "
-      "and lobe reads | rays | accumulation |\n"
-      "|---|---|---|---|---|---|---|\n");
-  for (const char* name : kBoxes) {
-    SolveOptions o;
-    o.max_steps = 0;
-    const Solution s = SolveFile(name, o).solution;
-    const RayTracer tracer(s.scene);
-    TableCache cache;
-    std::vector<MaterialLobes> materials;
-    for (const auto& m : s.scene.materials) materials.emplace_back(m.reflectance, o.lobes, cache);
-    const ShootingField emission(s.mesh, FindEmitters(s.scene));
-    const ShootingField reflected(s.scene, s.mesh, s.hidden, s.unshot);
-    Receiver receiver(s.mesh, tracer, materials);
-    std::vector<float> out(size_t(3) * 2 * kMaxBasisSize);
-    std::vector<std::vector<Ray>> rays;
-    Received timed_sum;
-    uint64_t count = 0;
-    const auto gather = [&](bool record, bool timed) {
-      for (const auto* field : {&emission, &reflected}) {
-        for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
-          if (s.hidden[n]) continue;
-          std::fill(out.begin(), out.end(), 0.0f);
-          const Received r =
-              receiver.Gather(n, *field, field == &emission ? o.light_samples : o.delta_areas,
-                              field == &emission ? 0.0f : s.direct.Flux(n).sum(), 1, out.data(), timed);
-          timed_sum.seconds_choosing += r.seconds_choosing;
-          timed_sum.seconds_rays += r.seconds_rays;
-          timed_sum.seconds_accumulating += r.seconds_accumulating;
-          if (record) {
-            rays.emplace_back(receiver.last_rays().begin(), receiver.last_rays().end());
-            count += r.rays;
-          }
-        }
-      }
-    };
-    gather(true, true);
-    const double whole = timed_sum.seconds_choosing + timed_sum.seconds_rays + timed_sum.seconds_accumulating;
-    std::vector<double> ratios, rates;
-    for (int run = 0; run < 5; ++run) {
-      const double t0 = CpuSeconds();
-      gather(false, false);
-      const double t1 = CpuSeconds();
-      std::vector<uint8_t> occluded;
-      for (const auto& r : rays) {
-        occluded.resize(r.size());
-        tracer.Occluded(r, occluded, true);
-      }
-      const double t2 = CpuSeconds();
-      ratios.push_back((t1 - t0) / (t2 - t1));
-      rates.push_back(double(count) / (t2 - t1) * 1e-6);
-    }
-    std::sort(ratios.begin(), ratios.end());
-    std::sort(rates.begin(), rates.end());
-    std::printf("| %s | %.2f M | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n", name, double(count) * 1e-6,
-                rates[2], ratios[2], 100 * timed_sum.seconds_choosing / whole,
-                100 * timed_sum.seconds_rays / whole, 100 * timed_sum.seconds_accumulating / whole);
-  }
-}
-
 // --- mesh ------------------------------------------------------------------------------------------------
 
 // A box of one and a half million elements, some of them asked for by chance.
@@ -676,7 +612,6 @@ const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"ba
                                                                             {"lobe-error", LobeError},
                                                                             {"residual", Residual},
                                                                             {"accumulation", Accumulation},
-                                                                            {"split", Split},
                                                                             {"refinement", RefinementSpeed},
                                                                             {"paths", Paths}};
 

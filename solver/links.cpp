@@ -171,13 +171,16 @@ struct Links::Tracing {
   }
 };
 
+LinkPattern Links::PatternOf(const MaterialLobes& material, int links) {
+  return LinkPattern::For(links, material.diffuse() ? 0 : material.max_degree(), kPerCoefficient);
+}
+
 size_t Links::EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
                             const Options& options) {
   size_t links = 0;
   for (const auto& p : mesh.patches) {
     const auto& m = materials[p.material];
-    links += size_t(p.node_end - p.node_begin) *
-             LinkPattern::For(options.links, m.diffuse() ? 0 : m.max_degree(), options.per_coefficient).count();
+    links += size_t(p.node_end - p.node_begin) * PatternOf(m, options.links).count();
   }
   return links * sizeof(uint32_t);
 }
@@ -191,8 +194,7 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
   size_t links = 0;
   for (const auto& p : mesh.patches) {
     const auto& m = materials[p.material];
-    const auto pattern =
-        LinkPattern::For(options.links, m.diffuse() ? 0 : m.max_degree(), options.per_coefficient);
+    const LinkPattern pattern = PatternOf(m, options.links);
     patches_.push_back({pattern, links, p.node_begin});
     links += size_t(p.node_end - p.node_begin) * pattern.count();
   }

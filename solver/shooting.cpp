@@ -1,7 +1,6 @@
 #include "solver/shooting.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -84,9 +83,6 @@ StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, cons
       p[0] * chosen.barycentrics[0] + p[1] * chosen.barycentrics[1] + p[2] * chosen.barycentrics[2];
   return chosen;
 }
-
-using Clock = std::chrono::steady_clock;
-double Seconds(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
 
 }  // namespace
 
@@ -307,17 +303,14 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
 }
 
 Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
-                          uint64_t seed, float* out, bool timed) {
+                          uint64_t seed, float* out) {
   Received work;
   deltas_.clear();
   rays_.clear();
-  const auto start = timed ? Clock::now() : Clock::time_point();
   Cut(node, field, samples, received_before, seed, work);
   work.rays = rays_.size();
   if (rays_.empty()) return work;
-  if (timed) work.seconds_choosing = Seconds(start);
 
-  const auto traced = timed ? Clock::now() : Clock::time_point();
   occluded_.resize(rays_.size());
   if (field.mirrors().empty()) {
     tracer_.Occluded(rays_, occluded_, /*coherent=*/true);
@@ -328,9 +321,7 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
     }
     work.rays = 2 * rays_.size();
   }
-  if (timed) work.seconds_rays = Seconds(traced);
 
-  const auto accumulated = timed ? Clock::now() : Clock::time_point();
   const MaterialLobes& material = materials_[mesh_.patches[mesh_.node_patch[node]].material];
   const Vec3& normal = mesh_.node_normal[node];
   if (material.diffuse()) {
@@ -367,7 +358,6 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
     moments_.Finish(out, out + 3 * material.base.count());
   }
   work.absorbed = work.delivered - work.reflected - work.mirrored - work.through;
-  if (timed) work.seconds_accumulating = Seconds(accumulated);
   return work;
 }
 

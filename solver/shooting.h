@@ -67,9 +67,9 @@ class Receiver {
   /// one shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes,
   /// zeroed by the caller). `received_before`: sum over channels of the irradiance so far; cells that bring
   /// less than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
-  /// `seed` decides which point of a cell stands for it. `timed`: fill the seconds.
+  /// `seed` decides which point of a cell stands for it.
   Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
-                  uint64_t seed, float* out, bool timed);
+                  uint64_t seed, float* out);
 
   /// The shadow rays of the last Gather, for measuring what tracing them alone costs (bench/).
   std::span<const Ray> last_rays() const { return rays_; }

@@ -30,10 +30,6 @@ namespace {
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
 
-// A glossy node takes this many links per coefficient of its lobe, or noise shows as blotches
-// (docs/validation.md#links).
-constexpr int kLinksPerCoefficient = 8;
-
 // Shooting needs links only to see which nodes are hidden and where light is lost.
 constexpr int kProbes = 64;
 
@@ -52,10 +48,24 @@ class ProgressiveSolver {
   }
 
   Solution Run() {
+    TimeSplit unwanted, &split = control_.time_split ? *control_.time_split : unwanted;
+    double since = 0;
+    const auto lap = [&](double& phase) {
+      const double now = Seconds();
+      phase += now - since;
+      since = now;
+    };
     Prepare();
-    if (Emission() && TraceLinks() && EmissionByMirrors()) {
+    lap(split.preparation);
+    bool through = Emission();
+    lap(split.emission);
+    through = through && TraceLinks();
+    lap(split.links);
+    through = through && EmissionByMirrors();
+    if (through) {
       s_.direct = s_.total;
       s_.stop_reason = Iterate();
+      lap(split.reflection);
     } else {
       // Told to stop before emission was through: all of it is still to be shot.
       gained_.SetZero();
@@ -141,7 +151,6 @@ class ProgressiveSolver {
   bool TraceLinks() {
     Links::Options options;
     options.links = by_links_ ? s_.options.links : kProbes;
-    options.per_coefficient = by_links_ ? kLinksPerCoefficient : 0;
     options.follow_mirrors = by_links_;
     options.seed = s_.options.seed;
     if (by_links_) planar_mirrors_ = FindPlanarMirrors(s_.mesh, materials_, emitters_);
@@ -260,21 +269,21 @@ class ProgressiveSolver {
   bool GatherShot(int step, const ShootingField& field, int samples, const std::vector<uint32_t>& nodes) {
     tbb::enumerable_thread_specific<Receiver> receivers(
         [&] { return Receiver(s_.mesh, tracer_, materials_); });
-    return ForEach(nodes, step, [&](uint32_t n, float* out, bool timed) {
+    return ForEach(nodes, step, [&](uint32_t n, float* out) {
       return receivers.local().Gather(n, field, samples, received_[n],
-                                      Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out, timed);
+                                      Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out);
     });
   }
 
   bool GatherLinked(int step, const LinkField& field, int thinning) {
     tbb::enumerable_thread_specific<LinkReceiver> receivers(
         [&] { return LinkReceiver(s_.mesh, *links_, materials_); });
-    return ForEach(AllNodes(), step, [&](uint32_t n, float* out, bool timed) {
-      return receivers.local().Gather(n, field, thinning, out, timed);
+    return ForEach(AllNodes(), step, [&](uint32_t n, float* out) {
+      return receivers.local().Gather(n, field, thinning, out);
     });
   }
 
-  // gather(node, out, timed) for every one of `nodes` that is not hidden, into gained_ and got_; false if told
+  // gather(node, out) for every one of `nodes` that is not hidden, into gained_ and got_; false if told
   // to stop, and then nothing else has changed.
   template <typename Gather>
   bool ForEach(const std::vector<uint32_t>& nodes, int step, const Gather& gather) {
@@ -292,7 +301,7 @@ class ProgressiveSolver {
         std::fill(out.begin(), out.end(), 0.0f);
         got_[n] = {};
         if (s_.hidden[n]) continue;
-        got_[n] = gather(n, out.data(), control_.time_split && n % 16 == 0);
+        got_[n] = gather(n, out.data());
       }
       Report(step, double(done += range.size()) / double(nodes.size()));
     });
@@ -335,10 +344,6 @@ class ProgressiveSolver {
       // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
       unshot += s_.unshot.Flux(n).cast<double>().abs().sum() * area;
       if (TimeSplit* split = control_.time_split) {
-        // One receiver in 16 was timed and stands for the others.
-        split->rays += 16 * r.seconds_rays;
-        split->choosing += 16 * r.seconds_choosing;
-        split->accumulation += 16 * r.seconds_accumulating;
         split->lobe_reads += r.lobe_reads;
         split->lobe_writes += r.lobe_writes;
       }

@@ -59,7 +59,7 @@ TEST_F(CommandsTest, SolveReportsWhatItDid) {
   EXPECT_LT(r["ledger"]["closure"].get<double>(), 1e-5);
   EXPECT_GT(r["solve_seconds"].get<double>(), 0);
   EXPECT_GT(r["cpu_seconds"].get<double>(), 0);
-  EXPECT_GT(r["time_split"]["rays"].get<double>(), 0);
+  EXPECT_GT(r["time_split"]["links"].get<double>(), 0);
   EXPECT_EQ(r["output"], File("out.glb"));
   EXPECT_EQ(folder_.Entries(), std::vector<std::string>{"out.glb"});
 }
