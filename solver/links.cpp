@@ -108,7 +108,7 @@ struct Links::Tracing {
     }
     scratch.hits.resize(scratch.rays.size());
     scratch.where.resize(scratch.rays.size());
-    tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+    tracer.IntersectTogether(scratch.rays, scratch.hits);
     locator.Locate(scratch.hits, scratch.where);
     scratch.traced += scratch.rays.size();
     RandomStream random(Mix(Mix(options.seed, 0x7a5), node));
