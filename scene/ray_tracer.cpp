@@ -194,8 +194,8 @@ struct RayTracer::Impl {
   }
 
   template <int width>
-  void IntersectPackets(std::span<const Ray> rays, std::span<RayHit> hits, bool choose) const {
-    Query query(true, choose ? &ChooseHit : nullptr);
+  void IntersectPackets(std::span<const Ray> rays, std::span<RayHit> hits) const {
+    Query query(true, &ChooseHit);
     alignas(4 * width) int valid[width];
     for (size_t begin = 0; begin < rays.size(); begin += width) {
       typename Packet<width>::Hits p;
@@ -214,7 +214,38 @@ struct RayTracer::Impl {
           continue;
         }
         hits[begin + i] = MakeHit(
-            p.hit.primID[i], choose ? query.t[i] : p.ray.tfar[i], p.hit.u[i], p.hit.v[i],
+            p.hit.primID[i], query.t[i], p.hit.u[i], p.hit.v[i],
+            p.hit.Ng_x[i] * p.ray.dir_x[i] + p.hit.Ng_y[i] * p.ray.dir_y[i] + p.hit.Ng_z[i] * p.ray.dir_z[i]);
+      }
+    }
+  }
+
+  template <int width>
+  void IntersectFan(const Vec3& origin, const float* x, const float* y, const float* z,
+                    std::span<RayHit> hits) const {
+    Query query(true);
+    alignas(4 * width) int valid[width];
+    typename Packet<width>::Hits p;
+    for (int i = 0; i < width; ++i) {
+      PutRay({origin, 0.0f, Vec3::UnitZ(), 0.0f}, i, &p.ray);
+    }
+    for (size_t begin = 0; begin < hits.size(); begin += width) {
+      const int count = static_cast<int>(std::min<size_t>(width, hits.size() - begin));
+      std::fill(valid, valid + width, 0);
+      std::fill(valid, valid + count, -1);
+      std::copy_n(x + begin, count, p.ray.dir_x);
+      std::copy_n(y + begin, count, p.ray.dir_y);
+      std::copy_n(z + begin, count, p.ray.dir_z);
+      std::fill(p.ray.tfar, p.ray.tfar + width, std::numeric_limits<float>::infinity());
+      std::fill(p.hit.geomID, p.hit.geomID + width, RTC_INVALID_GEOMETRY_ID);
+      Packet<width>::kIntersect(valid, scene, &query.context, &p);
+      for (int i = 0; i < count; ++i) {
+        if (p.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+          hits[begin + i] = {};
+          continue;
+        }
+        hits[begin + i] = MakeHit(
+            p.hit.primID[i], p.ray.tfar[i], p.hit.u[i], p.hit.v[i],
             p.hit.Ng_x[i] * p.ray.dir_x[i] + p.hit.Ng_y[i] * p.ray.dir_y[i] + p.hit.Ng_z[i] * p.ray.dir_z[i]);
       }
     }
@@ -270,15 +301,18 @@ bool RayTracer::Occluded(const Ray& ray) const { return impl_->OccludedOne(ray);
 
 // Packets are 3 times as fast for rays that go together, and up to 1.5 times slower for others.
 void RayTracer::Intersect(std::span<const Ray> rays, std::span<RayHit> hits, bool coherent) const {
-  if (coherent && impl_->packet_width == 16) return impl_->IntersectPackets<16>(rays, hits, /*choose=*/true);
-  if (coherent && impl_->packet_width == 8) return impl_->IntersectPackets<8>(rays, hits, /*choose=*/true);
+  if (coherent && impl_->packet_width == 16) return impl_->IntersectPackets<16>(rays, hits);
+  if (coherent && impl_->packet_width == 8) return impl_->IntersectPackets<8>(rays, hits);
   for (size_t i = 0; i < rays.size(); ++i) hits[i] = impl_->IntersectOne(rays[i]);
 }
 
-void RayTracer::IntersectTogether(std::span<const Ray> rays, std::span<RayHit> hits) const {
-  if (impl_->packet_width == 16) return impl_->IntersectPackets<16>(rays, hits, /*choose=*/false);
-  if (impl_->packet_width == 8) return impl_->IntersectPackets<8>(rays, hits, /*choose=*/false);
-  for (size_t i = 0; i < rays.size(); ++i) hits[i] = impl_->IntersectOne(rays[i]);
+void RayTracer::IntersectFan(const Vec3& origin, const float* x, const float* y, const float* z,
+                             std::span<RayHit> hits) const {
+  if (impl_->packet_width == 16) return impl_->IntersectFan<16>(origin, x, y, z, hits);
+  if (impl_->packet_width == 8) return impl_->IntersectFan<8>(origin, x, y, z, hits);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    hits[i] = impl_->IntersectOne({origin, 0.0f, {x[i], y[i], z[i]}, std::numeric_limits<float>::infinity()});
+  }
 }
 
 void RayTracer::Occluded(std::span<const Ray> rays, std::span<uint8_t> occluded, bool coherent) const {
