@@ -309,17 +309,16 @@ class ProgressiveSolver {
   }
 
   // Makes a gathered step part of the solution: total = what was gathered of all that was ever shot, and
-  // unshot = total - all that was ever shot. What was shot ahead is so taken back. In node order: sums do not
-  // depend on threads.
+  // unshot = total - all that was ever shot. What was shot ahead is so taken back.
   void Commit(int step, const std::vector<std::array<float, 3>>& ahead, uint32_t shooters) {
     PassThrough();
-    Ledger& ledger = s_.ledger;
-    double unshot = 0;
-    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+    const bool all_was_shot = by_links_ || s_.options.step_fraction >= 1;
+    flux_.resize(s_.mesh.node_count());
+    tbb::parallel_for(uint32_t(0), uint32_t(s_.mesh.node_count()), [&](uint32_t n) {
       const auto gained = gained_.all(n);
       if (s_.hidden[n]) std::fill(gained.begin(), gained.end(), 0.0f);
       auto total = s_.total.all(n), left = s_.unshot.all(n);
-      if (by_links_ || s_.options.step_fraction >= 1) {
+      if (all_was_shot) {
         std::fill(left.begin(), left.end(), 0.0f);
       } else if (step > 0) {
         const auto shot = shooting_.all(n);
@@ -330,19 +329,25 @@ class ProgressiveSolver {
         total[i] += gained[i];
         left[i] += gained[i];
       }
-      rays_ += got_[n].rays;
-      if (s_.hidden[n]) continue;
+      flux_[n] = {gained_.Flux(n), s_.unshot.Flux(n)};
+    });
+    // In node order: sums do not depend on threads.
+    Ledger& ledger = s_.ledger;
+    double unshot = 0;
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
       const Received& r = got_[n];
+      rays_ += r.rays;
+      if (s_.hidden[n]) continue;
       const double area = area_[n];
       received_[n] += r.delivered.sum();
-      const Eigen::Array3d flux(gained_.Flux(n).cast<double>());
+      const Eigen::Array3d flux(flux_[n].gained.cast<double>());
       ledger.delivered += r.delivered.cast<double>() * area;
       ledger.absorbed += r.absorbed.cast<double>() * area;
       (by_links_ ? ledger.passed_on : ledger.mirrored) += r.mirrored.cast<double>() * area;
       ledger.reflected += flux * area;
       ledger.truncated += ((r.reflected + r.through).cast<double>() - flux) * area;
       // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
-      unshot += s_.unshot.Flux(n).cast<double>().abs().sum() * area;
+      unshot += flux_[n].unshot.cast<double>().abs().sum() * area;
       if (TimeSplit* split = control_.time_split) {
         split->lobe_reads += r.lobe_reads;
         split->lobe_writes += r.lobe_writes;
@@ -422,6 +427,10 @@ class ProgressiveSolver {
   std::vector<float> received_;  // per node: irradiance so far, summed over channels
   NodeLobes shooting_, gained_;
   std::vector<Received> got_;
+  struct NodeFlux {
+    Rgb gained, unshot;
+  };
+  std::vector<NodeFlux> flux_;  // of the last step
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
   uint64_t rays_ = 0;
   std::mutex report_mutex_;
