@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include <tbb/parallel_for.h>
@@ -36,7 +37,8 @@ Ray RayFrom(const Vec3& point, const Vec3& normal, const Vec3& direction, float 
   return {point + normal * epsilon, 0.0f, direction, std::numeric_limits<float>::infinity()};
 }
 
-// Faces of one surface that share positions hang together.
+// Faces of one surface that share positions hang together, but not across contact lines: light may fall on
+// one side of those only. Where a line touches a position, faces must share an edge.
 std::vector<uint32_t> ConnectedPieces(const Scene& scene) {
   std::vector<uint32_t> parent(scene.faces.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -44,12 +46,33 @@ std::vector<uint32_t> ConnectedPieces(const Scene& scene) {
     while (parent[f] != f) f = parent[f] = parent[parent[f]];
     return f;
   };
-  std::map<std::tuple<uint32_t, float, float, float>, uint32_t> first;
+  using Place = std::tuple<uint32_t, float, float, float>;
+  const auto place = [&](uint32_t f, int k) {
+    const Vec3& p = scene.positions[scene.faces[f].vertex[k]];
+    return Place{scene.faces[f].surface, p.x(), p.y(), p.z()};
+  };
+  std::set<Place> on_line;
   for (uint32_t f = 0; f < scene.faces.size(); ++f) {
-    for (const uint32_t v : scene.faces[f].vertex) {
-      const Vec3& p = scene.positions[v];
-      const auto [it, added] = first.try_emplace({scene.faces[f].surface, p.x(), p.y(), p.z()}, f);
-      if (!added) parent[find(f)] = find(it->second);
+    for (int k = 0; k < 3; ++k) {
+      if (scene.faces[f].contact >> k & 1) on_line.insert({place(f, k), place(f, (k + 1) % 3)});
+    }
+  }
+  std::map<Place, uint32_t> first;
+  std::map<std::pair<Place, Place>, uint32_t> first_at_edge;
+  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const Place here = place(f, k);
+      if (on_line.empty() || !on_line.contains(here)) {
+        const auto [it, added] = first.try_emplace(here, f);
+        if (!added) parent[find(f)] = find(it->second);
+        continue;
+      }
+      for (const int edge : {k, (k + 2) % 3}) {
+        if (scene.faces[f].contact >> edge & 1) continue;
+        const auto [it, added] =
+            first_at_edge.try_emplace(std::minmax(place(f, edge), place(f, (edge + 1) % 3)), f);
+        if (!added) parent[find(f)] = find(it->second);
+      }
     }
   }
   for (uint32_t f = 0; f < parent.size(); ++f) parent[f] = find(f);

@@ -13,6 +13,8 @@ std::string SolveOptions::Validate() const {
     out << "crease angle " << mesh.crease_angle << " is out of range: 0 to pi radians is expected";
   } else if (!(mesh.border_inset >= 0) || !(mesh.border_inset <= 1)) {
     out << "border inset " << mesh.border_inset << " is out of range: 0 to 1 is expected";
+  } else if (!(contact_distance >= 0) || !std::isfinite(contact_distance)) {
+    out << "contact distance " << contact_distance << " m is out of range: 0 or a finite length is expected";
   } else if (lobes.l_max < 0 || lobes.l_max > 32) {
     out << "lmax " << lobes.l_max << " is out of range: 0 to 32 is expected";
   } else if (lobes.force_l_max < -1 || lobes.force_l_max > 32) {

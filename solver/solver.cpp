@@ -11,6 +11,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "scene/contacts.h"
 #include "solver/exposure.h"
 #include "solver/hash.h"
 #include "solver/shooting.h"
@@ -264,6 +265,7 @@ class ProgressiveSolver {
 
 Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& control) {
   if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
+  scene = CutAlongContacts(std::move(scene), {.distance = options.contact_distance});
   return ProgressiveSolver(std::move(scene), options, control).Run();
 }
 
