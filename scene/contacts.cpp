@@ -26,6 +26,10 @@ namespace {
 /// to the tessellation, whatever its crease angle; beyond, no node is shared anyhow. (chosen)
 constexpr float kSmooth = 0.5f;
 
+/// Cuts leave angles below this only where others force them, radians. (chosen: bisection, which comes after,
+/// keeps half of it, and Delaunay refinement is sure to end up to 0.36)
+constexpr double kLeastAngle = 0.3;
+
 ContactReach Reach(const Scene& scene, const ContactOptions& options) {
   const Eigen::AlignedBox3f bounds = scene.Bounds();
   const double size = bounds.diagonal().cast<double>().norm();
@@ -140,7 +144,10 @@ class Cutting {
       for (int k = 0; k < 3 && !dropped; ++k) {
         const double at_a = inward[k].dot(line.a - c[k]), at_b = inward[k].dot(line.b - c[k]);
         if (std::max(at_a, at_b) <= reach_.snap) {
-          if (IsSmooth(f, k)) MarkEdge(edges_.edge(f, k), line);
+          // Edges of neighbours that only leave from the same vertex are near for a short way, too.
+          const double length = (line.a - line.b).norm();
+          const bool parallel = std::abs(at_a - at_b) <= std::max(0.5 * reach_.rounding, 0.002 * length);
+          if (parallel && IsSmooth(f, k)) MarkEdge(edges_.edge(f, k), line);
           dropped = true;
         } else if (at_a < 0 || at_b < 0) {
           // Exactly at the border, so that the neighbour's line goes on from there.
@@ -270,6 +277,7 @@ class Cutting {
       return (a.a - a.b).squaredNorm() > (b.a - b.b).squaredNorm();
     });
     for (const ContactLine& line : lines) cutter.CutAlong(line.a, line.b);
+    if (cutter.vertices().size() > 3) cutter.Fatten(kLeastAngle);
     return cutter;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <queue>
 
 namespace lobe {
 
@@ -375,6 +376,92 @@ bool TriangleCutter::Connect(int from, int to) {
     Mark(e);  // before the others are looked at, lest it be turned again
     Legalize(turned);
   }
+  return true;
+}
+
+void TriangleCutter::Fatten(double least_angle) {
+  struct Thin {
+    double fatness;
+    std::array<int, 3> v;
+    bool operator<(const Thin& other) const {  // for a queue that gives the thinnest first
+      return fatness != other.fatness ? fatness > other.fatness : v > other.v;
+    }
+  };
+  std::priority_queue<Thin> queue;
+  const double least = std::sin(least_angle);
+  const auto enqueue = [&](const Triangle& t) {
+    const double fatness = Fatness(t.v[0], t.v[1], t.v[2]);
+    if (fatness < least) queue.push({fatness, t.v});
+  };
+  for (const Triangle& t : triangles_) enqueue(t);
+  // Each point opens the thinnest triangle and leaves edges no shorter than those about it, so there is an
+  // end; where lines meet at small angles the count makes one.
+  const size_t most = 64 + 8 * vertices_.size();
+  while (!queue.empty() && vertices_.size() < most) {
+    const Thin thin = queue.top();
+    queue.pop();
+    const Edge e = FindEdge(thin.v[0], thin.v[1]);
+    if (e.triangle == kOutside) continue;
+    int t = e.triangle;
+    if (triangles_[t].Find(thin.v[2]) < 0) t = triangles_[t].next[e.k];
+    if (t == kOutside || triangles_[t].Find(thin.v[2]) < 0) continue;  // gone
+    if (!AddInside(t, least_angle)) continue;
+    // Every triangle the new vertex has changed is at it.
+    Around(static_cast<int>(vertices_.size() - 1), [&](int changed, int) {
+      enqueue(triangles_[changed]);
+      return false;
+    });
+  }
+}
+
+/// A vertex that makes triangle t fatter, if it can be seen from there and is clear of lines and border.
+bool TriangleCutter::AddInside(int t, double least_angle) {
+  const Triangle& thin = triangles_[t];
+  int k = 0;  // shortest edge
+  const auto length = [&](int i) { return (point_[thin.v[(i + 1) % 3]] - point_[thin.v[i]]).norm(); };
+  for (int i = 1; i < 3; ++i) {
+    if (length(i) < length(k)) k = i;
+  }
+  const Point a = point_[thin.v[k]], b = point_[thin.v[(k + 1) % 3]], c = point_[thin.v[(k + 2) % 3]];
+  // The circumcentre is on the bisector of a-b at height h, where |p - a| = |p - c|.
+  const Point middle = 0.5 * (a + b), along = (b - a) / (b - a).norm(), up(-along.y(), along.x());
+  const Point apex = c - middle;
+  const double x = apex.dot(along), y = apex.dot(up), half = 0.5 * (b - a).norm();
+  if (!(y > 0)) return false;
+  const double circumcentre = (x * x + y * y - half * half) / (2 * y);
+  const Point p = middle + up * std::min(circumcentre, half / std::tan(0.5 * least_angle));
+
+  // Walks there from the middle of the thin one; lines are walls.
+  Point from = Point::Zero();
+  for (int i = 0; i < 3; ++i) from += point_[triangles_[t].v[i]] / 3;
+  int home = t, came_from = kOutside;
+  for (size_t steps = 0;; ++steps) {
+    if (steps > triangles_.size()) return false;
+    const Triangle& here = triangles_[home];
+    int leave = -1;
+    for (int i = 0; i < 3 && leave < 0; ++i) {
+      const Point &q = point_[here.v[i]], &r = point_[here.v[(i + 1) % 3]];
+      if (here.next[i] == came_from && came_from != kOutside) continue;
+      const bool beyond = Cross(r - q, p - q) < 0;
+      // Through this edge, not one whose straight continuation is passed.
+      if (beyond && Cross(p - from, q - from) <= 0 && Cross(p - from, r - from) >= 0) leave = i;
+    }
+    if (leave < 0) break;
+    if (here.line[leave] || here.next[leave] == kOutside) return false;
+    came_from = home;
+    home = here.next[leave];
+  }
+  const Triangle& here = triangles_[home];
+  for (int i = 0; i < 3; ++i) {
+    const Point q = point_[here.v[i]] - p, r = point_[here.v[(i + 1) % 3]] - p;
+    if (q.norm() <= 4 * snap_) return false;
+    const double distance = Cross(q, r) / (r - q).norm();
+    // In sight of a line or the border at more than a right angle, it would squeeze thin triangles there.
+    const bool fixed = here.line[i] || here.next[i] == kOutside;
+    if (distance <= 4 * snap_ || (fixed && q.dot(r) < 0)) return false;
+  }
+  const Vec3d exact = origin_ + p.x() * x_ + p.y() * y_;
+  SplitTriangle(home, AddVertex(exact.cast<float>()));
   return true;
 }
 

@@ -15,7 +15,8 @@ namespace lobe {
 ///
 /// Lines are recovered by swapping diagonals (Sloan, Computers & Structures 47(3), 1993), and diagonals are
 /// swapped while that opens the smallest angle, which is Delaunay's choice (Sibson, Computer J. 21, 1978).
-/// It only ever grows, so rounding cannot make it run in circles.
+/// It only ever grows, so rounding cannot make it run in circles. Extra points are those of Ungor (Computational
+/// Geometry 42(2), 2009): Ruppert's circumcentres, drawn in to where the thin triangle is just fat enough.
 class TriangleCutter {
  public:
   struct Piece {
@@ -37,6 +38,10 @@ class TriangleCutter {
   /// Ends are on the triangle, to within snap. False: it could not be cut along all of the line, for want
   /// of a vertex on the border (see requests()).
   bool CutAlong(const Vec3d& a, const Vec3d& b);
+
+  /// Adds vertices inside while that opens angles below `least_angle` (radians, at most 0.35): short lines far
+  /// from the border would leave long thin triangles. After all lines; lines and border stay as they are.
+  void Fatten(double least_angle);
 
   const std::vector<Request>& requests() const { return requests_; }
   /// Points rounded to single precision, which is what all cuts were computed with.
@@ -77,6 +82,7 @@ class TriangleCutter {
   bool CrossedEdges(int a, int b, std::vector<std::pair<int, int>>* edges) const;
   double Side(int a, int b, int c) const;  // twice the area, positive if counter-clockwise
   double Fatness(int a, int b, int c) const;
+  bool AddInside(int t, double least_angle);
 
   double snap_;
   Vec3d origin_, x_, y_;
