@@ -109,8 +109,9 @@ Vec3 CornerNormal(const Scene& scene, const Face& face, int k, const Vec3& geome
   return cosine > 0 ? normal : Vec3(-normal);
 }
 
+/// `wide`: see PartAtContacts; by vertex, shorter than those.
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
-                      const TessellateOptions& options) {
+                      const TessellateOptions& options, std::vector<bool>* wide) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint8_t> contact;
@@ -137,7 +138,7 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
     contact.push_back(s.side == Side::kFront ? bits
                                              : static_cast<uint8_t>((bits & 2) | (bits & 1) << 2 | bits >> 2));
   }
-  PartAtContacts(contact, &welder, &triangles);
+  *wide = PartAtContacts(contact, &welder, &triangles);
   return BisectLongEdges(triangles, welder.positions(), welder.normals(),
                          options.max_edge * (1 + kEdgeSlack));
 }
@@ -173,8 +174,10 @@ class Layout {
  public:
   Layout(Mesh* mesh, const TessellateOptions& options) : mesh_(*mesh), options_(options) {}
 
-  void Append(const Scene& scene, const Group& group, const Bisection& bisection) {
+  void Append(const Scene& scene, const Group& group, const Bisection& bisection, std::vector<bool> wide) {
     node_of_vertex_.assign(bisection.position.size(), kNone);
+    wide_ = std::move(wide);
+    wide_.resize(bisection.position.size());
     for (const std::vector<uint32_t>& piece : ConnectedPieces(bisection, group.size())) {
       Mesh::Patch patch;
       const Face& face = scene.faces[group[piece[0]].face];
@@ -228,7 +231,7 @@ class Layout {
     std::array<uint32_t, 3> nodes;
     for (int k = 0; k < 3; ++k) {
       uint32_t& node = node_of_vertex_[vertices[k]];
-      if (node == kNone) {
+      if (node == kNone || wide_[vertices[k]]) {  // at wide corners every element has a node of its own
         node = static_cast<uint32_t>(mesh_.node_count());
         mesh_.node_position.push_back(bisection.position[vertices[k]]);
         mesh_.node_normal.push_back(bisection.normal[vertices[k]]);
@@ -321,6 +324,7 @@ class Layout {
   Mesh& mesh_;
   const TessellateOptions& options_;
   std::vector<uint32_t> node_of_vertex_;
+  std::vector<bool> wide_;       // by vertex
   std::vector<uint8_t> border_;  // per node of the patch at hand
 };
 
@@ -340,7 +344,11 @@ Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std:
   Mesh mesh;
   mesh.roots.assign(2 * scene.faces.size(), kNone);
   Layout layout(&mesh, options);
-  for (const Group& group : groups) layout.Append(scene, group, BisectGroup(scene, bounds, group, options));
+  for (const Group& group : groups) {
+    std::vector<bool> wide;
+    const Bisection bisection = BisectGroup(scene, bounds, group, options, &wide);
+    layout.Append(scene, group, bisection, std::move(wide));
+  }
   return mesh;
 }
 

@@ -39,7 +39,11 @@ class Welder {
 /// `contact[i]` says that triangle i's edge from corner k to k + 1 is such a line (Face::contact). Corners at
 /// the end of a line keep one number if the triangles around it share edges all the way from one side to
 /// the other; new numbers come in order of triangles. Corners that touch no line are left alone.
-void PartAtContacts(const std::vector<uint8_t>& contact, Welder* welder,
+///
+/// Returns, by number, corners around which the surface extends by much more than a straight angle, as outside
+/// the foot of a box and around the end of a wall: shadows begin there, so light depends on the direction one
+/// comes from, and no single value will do.
+std::vector<bool> PartAtContacts(const std::vector<uint8_t>& contact, Welder* welder,
                     std::vector<std::array<uint32_t, 3>>* triangles);
 
 }  // namespace lobe
