@@ -93,7 +93,8 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
 
   const size_t faces_cut = solution.scene.faces.size() - faces_read;
   if (faces_cut > 0) {
-    console.Say("contacts: cut along where surfaces touch, which made " + Count(faces_cut, "triangle") + " more");
+    console.Say("contacts: cut along where surfaces touch, which made " + Count(faces_cut, "triangle") +
+                " more");
   }
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));

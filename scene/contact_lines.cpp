@@ -166,7 +166,8 @@ void ContactFinder::AddNearEdge(const Target& target, uint32_t edge, std::vector
     const bool touches = std::max(std::abs(hp), std::abs(hq)) <= reach_.rounding;
     if (!IsOutline(target, edge, sign, touches)) continue;
     // Vertices that touch keep their very coordinates.
-    lines->push_back({std::abs(hp) <= reach_.rounding ? p : foot_p, std::abs(hq) <= reach_.rounding ? q : foot_q});
+    lines->push_back(
+        {std::abs(hp) <= reach_.rounding ? p : foot_p, std::abs(hq) <= reach_.rounding ? q : foot_q});
     return;
   }
 }

@@ -338,8 +338,8 @@ class Cutting {
           continue;
         }
         // Faces that shared the edge's vertices share the new one.
-        const auto ends = std::minmax(face.vertex[corner[(opposite + 1) % 3]],
-                                      face.vertex[corner[(opposite + 2) % 3]]);
+        const auto ends =
+            std::minmax(face.vertex[corner[(opposite + 1) % 3]], face.vertex[corner[(opposite + 2) % 3]]);
         const auto key = std::tuple(ends.first, ends.second, p.x(), p.y(), p.z());
         auto found = shared_.find(key);
         if (found == shared_.end()) found = shared_.emplace(key, add()).first;
@@ -352,7 +352,7 @@ class Cutting {
       for (int k = 0; k < 3; ++k) part.vertex[k] = vertex[piece.vertex[k]];
       if (turned) {
         std::swap(part.vertex[1], part.vertex[2]);
-        part.contact = static_cast<uint8_t>((piece.lines & 2) | (piece.lines & 1) << 2 | piece.lines >> 2);
+        part.contact = (piece.lines & 2) | (piece.lines & 1) << 2 | piece.lines >> 2;
       }
       faces->push_back(part);
     }
@@ -402,13 +402,13 @@ class Cutting {
             m = shared_.emplace(shared, static_cast<uint32_t>(scene_.positions.size() - 1)).first;
           }
           // Bits of the edges a-b, b-c, c-a.
-          const int ab = face.contact >> k & 1, bc = face.contact >> (k + 1) % 3 & 1;
-          const int ca = face.contact >> (k + 2) % 3 & 1;
+          const uint32_t ab = face.contact >> k & 1, bc = face.contact >> (k + 1) % 3 & 1;
+          const uint32_t ca = face.contact >> (k + 2) % 3 & 1;
           parts[i].vertex = {a, m->second, c};
-          parts[i].contact = static_cast<uint8_t>(ab | ca << 2);
+          parts[i].contact = ab | ca << 2;
           Face second = face;
           second.vertex = {m->second, b, c};
-          second.contact = static_cast<uint8_t>(ab | bc << 1);
+          second.contact = ab | bc << 1;
           parts.push_back(second);
           k = -1;  // its corners are others now
         }
@@ -425,7 +425,7 @@ class Cutting {
   std::vector<Sheet> sheets_;
   std::vector<std::vector<ContactLine>> lines_;  // by sheet
   std::map<uint32_t, EdgeCut> edge_cuts_;
-  std::map<size_t, std::optional<TriangleCutter>> cut_;  // by sheet
+  std::map<size_t, std::optional<TriangleCutter>> cut_;                             // by sheet
   std::map<std::tuple<uint32_t, uint32_t, float, float, float>, uint32_t> shared_;  // new vertices on edges
   size_t crowded_ = 0;
   ContactReport report_;

@@ -8,8 +8,9 @@ namespace lobe {
 
 struct ContactOptions {
   /// Edges nearer to a face than this leave their line on it, metres; 0: nothing is cut. More bridges larger
-  /// gaps (a frame off a wall), less tells apart finer detail. At most a thousandth of the scene's diagonal is
-  /// used, and at least a few rounding errors of its coordinates, so that what is meant to touch does. (chosen)
+  /// gaps (a frame off a wall), less tells apart finer detail. At most a thousandth of the scene's diagonal
+  /// is used, and at least a few rounding errors of its coordinates, so that what is meant to touch does.
+  /// (chosen)
   float distance = 0.002f;
   /// Lines on one face. Beyond it small bends are straightened, up to a hundredth of the face's longest edge;
   /// then the longest lines are kept, and the scene warns. Time of a face grows with its square. (chosen)
@@ -17,9 +18,9 @@ struct ContactOptions {
 };
 
 struct ContactReport {
-  size_t lines = 0;          ///< pieces of contact line that were cut along, straight ones merged, over all faces
-  size_t faces_cut = 0;      ///< faces of the given scene that are no longer whole
-  size_t pieces = 0;         ///< what has become of them
+  size_t lines = 0;      ///< pieces of contact line that were cut along, straight ones merged, over all faces
+  size_t faces_cut = 0;  ///< faces of the given scene that are no longer whole
+  size_t pieces = 0;     ///< what has become of them
   size_t crowded_faces = 0;  ///< faces that lost lines to max_lines
 };
 

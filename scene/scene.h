@@ -28,7 +28,7 @@ struct Face {
   uint32_t surface;  ///< faces of one glTF node's primitive share it; welding stays inside
   /// Bit k: the edge from corner k to k + 1 lies on a contact line (scene/contacts.h), where light may jump:
   /// nodes are not shared across it. Set for the faces on both sides.
-  uint8_t contact = 0;
+  uint32_t contact = 0;
 };
 
 struct Camera {

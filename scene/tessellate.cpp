@@ -114,7 +114,7 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
                       const TessellateOptions& options, std::vector<bool>* wide) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
   std::vector<std::array<uint32_t, 3>> triangles;
-  std::vector<uint8_t> contact;
+  std::vector<uint32_t> contact;
   triangles.reserve(group.size());
   for (const FaceSide& s : group) {
     const Face& face = scene.faces[s.face];
@@ -133,10 +133,9 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
       for (int k = 0; k < 3; ++k) corner[k] = welder.AddAlone(position[k], normal[k]);
     }
     triangles.push_back(corner);
-    const uint8_t bits = face.contact;
+    const uint32_t bits = face.contact;
     // The back's corners 1 and 2 are swapped, so its first edge is the face's last.
-    contact.push_back(s.side == Side::kFront ? bits
-                                             : static_cast<uint8_t>((bits & 2) | (bits & 1) << 2 | bits >> 2));
+    contact.push_back(s.side == Side::kFront ? bits : (bits & 2) | (bits & 1) << 2 | bits >> 2);
   }
   *wide = PartAtContacts(contact, &welder, &triangles);
   return BisectLongEdges(triangles, welder.positions(), welder.normals(),

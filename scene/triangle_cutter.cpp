@@ -169,10 +169,9 @@ void TriangleCutter::Legalize(std::vector<std::pair<int, int>> edges) {
     const int u = triangles_[e.triangle].next[1];
     const Triangle& left = triangles_[e.triangle];
     const Triangle& right = triangles_[u];
-    edges.insert(edges.end(), {{left.v[0], left.v[1]},
-                               {left.v[2], left.v[0]},
-                               {right.v[0], right.v[1]},
-                               {right.v[1], right.v[2]}});
+    edges.insert(
+        edges.end(),
+        {{left.v[0], left.v[1]}, {left.v[2], left.v[0]}, {right.v[0], right.v[1]}, {right.v[1], right.v[2]}});
   }
 }
 
@@ -479,7 +478,7 @@ std::vector<TriangleCutter::Piece> TriangleCutter::Pieces() const {
     Piece piece{{}, 0};
     for (int k = 0; k < 3; ++k) {
       piece.vertex[k] = static_cast<uint32_t>(t.v[k]);
-      if (t.line[k]) piece.lines = static_cast<uint8_t>(piece.lines | 1 << k);
+      if (t.line[k]) piece.lines |= 1u << k;
     }
     pieces.push_back(piece);
   }

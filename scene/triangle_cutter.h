@@ -15,13 +15,14 @@ namespace lobe {
 ///
 /// Lines are recovered by swapping diagonals (Sloan, Computers & Structures 47(3), 1993), and diagonals are
 /// swapped while that opens the smallest angle, which is Delaunay's choice (Sibson, Computer J. 21, 1978).
-/// It only ever grows, so rounding cannot make it run in circles. Extra points are those of Ungor (Computational
-/// Geometry 42(2), 2009): Ruppert's circumcentres, drawn in to where the thin triangle is just fat enough.
+/// It only ever grows, so rounding cannot make it run in circles. Extra points are those of Ungor
+/// (Computational Geometry 42(2), 2009): Ruppert's circumcentres, drawn in to where the thin triangle is just
+/// fat enough.
 class TriangleCutter {
  public:
   struct Piece {
     std::array<uint32_t, 3> vertex;  ///< wound as the triangle
-    uint8_t lines;                   ///< bit k: corner k to k + 1 lies on a line
+    uint32_t lines;                  ///< bit k: corner k to k + 1 lies on a line
   };
   /// A place on the triangle's border where a line wants a vertex and there is none.
   struct Request {
@@ -39,8 +40,8 @@ class TriangleCutter {
   /// of a vertex on the border (see requests()).
   bool CutAlong(const Vec3d& a, const Vec3d& b);
 
-  /// Adds vertices inside while that opens angles below `least_angle` (radians, at most 0.35): short lines far
-  /// from the border would leave long thin triangles. After all lines; lines and border stay as they are.
+  /// Adds vertices inside while that opens angles below `least_angle` (radians, at most 0.35): short lines
+  /// far from the border would leave long thin triangles. After all lines; lines and border stay as they are.
   void Fatten(double least_angle);
 
   const std::vector<Request>& requests() const { return requests_; }

@@ -72,9 +72,9 @@ uint32_t Welder::AddAlone(const Vec3& position, const Vec3& normal) {
   return static_cast<uint32_t>(positions_.size() - 1);
 }
 
-std::vector<bool> PartAtContacts(const std::vector<uint8_t>& contact, Welder* welder,
+std::vector<bool> PartAtContacts(const std::vector<uint32_t>& contact, Welder* welder,
                                  std::vector<std::array<uint32_t, 3>>* triangles) {
-  if (std::all_of(contact.begin(), contact.end(), [](uint8_t bits) { return bits == 0; })) return {};
+  if (std::all_of(contact.begin(), contact.end(), [](uint32_t bits) { return bits == 0; })) return {};
   std::vector<std::array<uint32_t, 3>>& corners = *triangles;
   std::vector<bool> on_line(welder->positions().size());
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -129,7 +129,8 @@ std::vector<bool> PartAtContacts(const std::vector<uint8_t>& contact, Welder* we
     for (int k = 0; k < 3; ++k) {
       if (!on_line[triangle[k]]) continue;
       const auto to = [&](int i) {
-        return Vec3d((welder->positions()[triangle[i % 3]] - welder->positions()[triangle[k]]).cast<double>());
+        return Vec3d(
+            (welder->positions()[triangle[i % 3]] - welder->positions()[triangle[k]]).cast<double>());
       };
       const Vec3d a = to(k + 1), b = to(k + 2);
       angle[triangle[k]] += std::atan2(a.cross(b).norm(), a.dot(b));

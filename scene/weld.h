@@ -40,10 +40,10 @@ class Welder {
 /// the end of a line keep one number if the triangles around it share edges all the way from one side to
 /// the other; new numbers come in order of triangles. Corners that touch no line are left alone.
 ///
-/// Returns, by number, corners around which the surface extends by much more than a straight angle, as outside
-/// the foot of a box and around the end of a wall: shadows begin there, so light depends on the direction one
-/// comes from, and no single value will do.
-std::vector<bool> PartAtContacts(const std::vector<uint8_t>& contact, Welder* welder,
-                    std::vector<std::array<uint32_t, 3>>* triangles);
+/// Returns, by number, corners around which the surface extends by much more than a straight angle, as
+/// outside the foot of a box and around the end of a wall: shadows begin there, so light depends on the
+/// direction one comes from, and no single value will do.
+std::vector<bool> PartAtContacts(const std::vector<uint32_t>& contact, Welder* welder,
+                                 std::vector<std::array<uint32_t, 3>>* triangles);
 
 }  // namespace lobe
