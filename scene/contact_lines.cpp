@@ -72,7 +72,7 @@ std::vector<ContactLine> ContactFinder::LinesOn(uint32_t number, bool both_sides
 
   Eigen::AlignedBox3f box;
   for (const Vec3d& p : c) box.extend(p.cast<float>());
-  const Vec3 margin = Vec3::Constant(static_cast<float>(2 * target.distance + reach_.snap));
+  const Vec3 margin = Vec3::Constant(static_cast<float>(target.distance + reach_.snap));
   box.min() -= margin;
   box.max() += margin;
 
