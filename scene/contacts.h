@@ -36,9 +36,9 @@ struct ContactReport {
 /// and scenes where nothing touches, come back bit for bit. New vertices lie on the old faces to rounding,
 /// are equal wherever faces shared an edge (no T-junctions, no cracks), and have interpolated normals.
 ///
-/// Faces whose border is not shared (two floors side by side with vertices of their own) are separate here as in
-/// the tessellation. Where a line crosses from one curved face to the next, its two parts may miss each other by
-/// distance times the angle between the faces.
+/// Faces whose border is not shared (two floors side by side with vertices of their own) are separate here as
+/// in the tessellation. Where a line crosses from one curved face to the next, its two parts may miss each
+/// other by distance times the angle between the faces.
 ///
 /// O(n log n) in faces when each touches few others.
 Scene CutAlongContacts(Scene scene, const ContactOptions& options = {}, ContactReport* report = nullptr);
