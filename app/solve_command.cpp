@@ -77,6 +77,7 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
   const std::atomic<bool>* interrupted = CatchInterrupts();
 
   Scene scene = ReadScene(flags.scene);
+  const size_t faces_read = scene.faces.size();
   for (const std::string& warning : scene.warnings) console.Warn(warning);
   console.Say(flags.scene + "\n" + SceneText(scene));
 
@@ -94,6 +95,11 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
 
   WriteSolution(solution, flags.output);
 
+  const size_t faces_cut = solution.scene.faces.size() - faces_read;
+  if (faces_cut > 0) {
+    console.Say("contacts: cut along where surfaces touch, which made " + Count(faces_cut, "triangle") +
+                " more");
+  }
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));
   const double emitted = Total(solution.ledger.emitted), mirrored = Total(solution.ledger.mirrored);
@@ -133,6 +139,11 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->required();
   SolveOptions& o = flags->options;
   solve->add_option("--edge", o.mesh.max_edge, "Longest edge of an element, metres")
+      ->type_name("M")
+      ->capture_default_str();
+  solve
+      ->add_option("--contact-distance", o.contact_distance,
+                   "Cut surfaces where others touch them or come nearer than this, metres; 0: nowhere")
       ->type_name("M")
       ->capture_default_str();
   solve

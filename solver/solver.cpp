@@ -13,6 +13,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "scene/contacts.h"
 #include "scene/opposite_nodes.h"
 #include "solver/coarse_transport.h"
 #include "solver/exposure.h"
@@ -440,6 +441,7 @@ class ProgressiveSolver {
 
 Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& control) {
   if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
+  scene = CutAlongContacts(std::move(scene), {.distance = options.contact_distance});
   return ProgressiveSolver(std::move(scene), options, control).Run();
 }
 
