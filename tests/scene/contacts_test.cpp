@@ -610,7 +610,7 @@ TEST(SlowContactsTest, HundredThousandFacesTakeASecondOrTwo) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cout << before.faces.size() << " faces, " << report.lines << " lines: " << seconds << " s\n";
   EXPECT_GT(report.lines, 1000u);
-  EXPECT_LT(seconds, 20);
+  EXPECT_LT(seconds, 120) << "with sanitizers it takes 30 s; by all pairs it would be hours";
 }
 
 }  // namespace
