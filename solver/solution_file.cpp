@@ -169,6 +169,10 @@ class SolutionWriter {
     if (std::find_if(hidden.begin(), hidden.end(), [](uint8_t h) { return h != 0; }) != hidden.end()) {
       own["hidden"] = glb_.AddBytes(hidden);
     }
+    if (!s_.received.empty()) {
+      own["received"] =
+          glb_.AddFloats(std::span(s_.received).subspan(patch.node_begin, count), "SCALAR", Target::kNone);
+    }
     const PartDegrees& degrees = s_.total.patch_degrees(p);
     if (degrees.base >= 0) own["lMaxBase"] = degrees.base;
     if (degrees.gloss >= 0) own["lMaxGloss"] = degrees.gloss;

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include <tbb/blocked_range.h>
@@ -20,6 +21,7 @@
 #include "solver/link_gather.h"
 #include "solver/links.h"
 #include "solver/losses.h"
+#include "solver/resume.h"
 #include "solver/shooting.h"
 
 namespace lobe {
@@ -35,6 +37,13 @@ constexpr int kLinksPerCoefficient = 8;
 // Shooting needs links only to see which nodes are hidden and where light is lost.
 constexpr int kProbes = 64;
 
+// Emission alone is worth a checkpoint if it took this share of the pause between checkpoints (chosen).
+constexpr double kEmissionShare = 0.1;
+
+// From one checkpoint to the next passes at least this many times what writing took: at most a tenth of the
+// time goes into them.
+constexpr double kCheckpointWork = 10;
+
 Ledger::Power& operator+=(Ledger::Power& a, const Eigen::Array3d& b) {
   for (int c = 0; c < 3; ++c) a[c] += b[c];
   return a;
@@ -49,6 +58,31 @@ class ProgressiveSolver {
     by_links_ = options.transport != Transport::kShooting;
   }
 
+  /// Continues `state`, which has whole steps behind it.
+  ProgressiveSolver(Solution state, const SolveControl& control)
+      : control_(control), start_(std::chrono::steady_clock::now()), tracer_(state.scene) {
+    s_ = std::move(state);
+    by_links_ = s_.options.transport != Transport::kShooting;
+    seconds_before_ = s_.solve_seconds;
+    rays_ = s_.history.back().rays;
+  }
+
+  Solution Continue() {
+    if (const auto reason = WhyDone()) {
+      s_.stop_reason = *reason;
+      return std::move(s_);
+    }
+    if (!PrepareToContinue()) {
+      // The state is as good as it was, its ledger too.
+      s_.stop_reason = WhyStop();
+      return std::move(s_);
+    }
+    ++s_.resumed;
+    s_.stop_reason = Iterate();
+    Close();
+    return std::move(s_);
+  }
+
   Solution Run() {
     Prepare();
     if (Emission() && TraceLinks() && EmissionByMirrors()) {
@@ -57,6 +91,7 @@ class ProgressiveSolver {
     } else {
       // Told to stop before emission was through: all of it is still to be shot.
       for (NodeLobes* lobes : {&s_.total, &s_.direct, &s_.unshot}) lobes->SetZero();
+      s_.received = {};
       s_.ledger = {};
       s_.stop_reason = WhyStop();
     }
@@ -65,36 +100,65 @@ class ProgressiveSolver {
   }
 
  private:
-  double Seconds() const {
+  // Of this run; what is recorded counts those before it too.
+  double SecondsOfRun() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+  double Seconds() const { return seconds_before_ + SecondsOfRun(); }
   bool Interrupted() const { return control_.stop && control_.stop->load(std::memory_order_relaxed); }
-  bool OutOfTime() const { return s_.options.max_seconds > 0 && Seconds() > s_.options.max_seconds; }
+  bool OutOfTime() const { return s_.options.max_seconds > 0 && SecondsOfRun() > s_.options.max_seconds; }
   bool MustStop() const { return Interrupted() || OutOfTime(); }
   StopReason WhyStop() const { return Interrupted() ? StopReason::kInterrupted : StopReason::kTimeLimit; }
 
   void Prepare() {
     const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed);
     s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit);
-    emitters_ = FindEmitters(s_.scene);
+    PrepareMaterials();
+    s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, Degrees());
+    s_.hidden.assign(s_.mesh.node_count(), 0);
+    if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
+    PrepareTransport();
+  }
+
+  // All that is not in the state follows from the scene, the mesh and the settings.
+  bool PrepareToContinue() {
+    PrepareMaterials();
+    const std::vector<PartDegrees> degrees = Degrees();
+    CheckResumable(s_, degrees);
+    gained_ = NodeLobes(s_.mesh, degrees);
+    PrepareTransport();
+    const uint64_t rays = rays_;
+    if (!TraceLinks()) return false;
+    rays_ = rays;  // counted before
+    return true;
+  }
+
+  void PrepareMaterials() {
+    s_.material_kinds.clear();
+    s_.material_errors.clear();
     TableCache cache;
     for (const auto& material : s_.scene.materials) {
       materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
       s_.material_kinds.push_back(materials_.back().kind());
       s_.material_errors.push_back(materials_.back().gloss.error);
     }
+  }
+
+  std::vector<PartDegrees> Degrees() const {
     std::vector<PartDegrees> degrees;
     for (const auto& patch : s_.mesh.patches) {
       const auto& lobes = materials_[patch.material];
       degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
     }
-    s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, degrees);
-    s_.hidden.assign(s_.mesh.node_count(), 0);
+    return degrees;
+  }
+
+  void PrepareTransport() {
+    emitters_ = FindEmitters(s_.scene);
     const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
     if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
       opposite_ = OppositeNodes(s_.mesh, s_.scene);
     }
-    received_.assign(s_.mesh.node_count(), 0.0f);
     for (const auto& e : emitters_) {
       emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
     }
@@ -149,18 +213,42 @@ class ProgressiveSolver {
     return true;
   }
 
+  // Is there nothing to do after the last whole step?
+  std::optional<StopReason> WhyDone() const {
+    if (s_.residual() <= s_.options.residual) return StopReason::kConverged;
+    const size_t n = s_.history.size();
+    if (n > size_t(s_.options.max_steps)) return StopReason::kStepLimit;
+    if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
+    if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
+      return StopReason::kNotConverging;
+    }
+    return std::nullopt;
+  }
+
   StopReason Iterate() {
-    for (int step = 1;; ++step) {
-      if (s_.residual() <= s_.options.residual) return StopReason::kConverged;
-      if (step > s_.options.max_steps) return StopReason::kStepLimit;
+    for (;;) {
+      if (const auto reason = WhyDone()) return *reason;
       if (MustStop()) return WhyStop();
-      const size_t n = s_.history.size();
-      if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
-      if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
-        return StopReason::kNotConverging;
-      }
+      Checkpoint();
+      const int step = int(s_.history.size());
       if (!(by_links_ ? Sweep(step) : ShootingStep(step))) return WhyStop();
     }
+  }
+
+  // Shows the state to whoever keeps it, when it is time.
+  void Checkpoint() {
+    if (!control_.checkpoint || !(control_.checkpoint_seconds > 0)) return;
+    const double now = SecondsOfRun();
+    // When emission has taken long, so will the steps: what there is can be looked at from here on.
+    const bool emission_only = s_.history.size() == 1 && s_.resumed == 0;
+    const double pause = emission_only ? kEmissionShare * control_.checkpoint_seconds
+                                       : std::max(control_.checkpoint_seconds, checkpoint_pause_);
+    if (now - last_checkpoint_ < pause) return;
+    s_.stop_reason = StopReason::kUnfinished;
+    Close();
+    control_.checkpoint(s_);
+    last_checkpoint_ = SecondsOfRun();
+    checkpoint_pause_ = kCheckpointWork * (last_checkpoint_ - now);
   }
 
   // Sends all unshot light through the links, and with it what the coarse solution says will follow.
@@ -218,7 +306,7 @@ class ProgressiveSolver {
     tbb::enumerable_thread_specific<Receiver> receivers(
         [&] { return Receiver(s_.mesh, tracer_, materials_); });
     return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
-      return receivers.local().Gather(n, field, samples, received_[n],
+      return receivers.local().Gather(n, field, samples, s_.received.empty() ? 0.0f : s_.received[n],
                                       Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out, timed);
     });
   }
@@ -283,7 +371,7 @@ class ProgressiveSolver {
       if (s_.hidden[n]) continue;
       const Received& r = got_[n];
       const double area = area_[n];
-      received_[n] += r.delivered.sum();
+      if (!s_.received.empty()) s_.received[n] += r.delivered.sum();
       const Eigen::Array3d flux(gained_.Flux(n).cast<double>());
       ledger.delivered += r.delivered.cast<double>() * area;
       ledger.absorbed += r.absorbed.cast<double>() * area;
@@ -371,11 +459,12 @@ class ProgressiveSolver {
   std::unique_ptr<CoarseTransport> coarse_;
   std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none
   std::vector<double> area_;
-  std::vector<float> received_;  // per node: irradiance so far, summed over channels
   NodeLobes shooting_, gained_;
   std::vector<Received> got_;
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
   uint64_t rays_ = 0;
+  double seconds_before_ = 0;  // in the runs that this one continues
+  double last_checkpoint_ = 0, checkpoint_pause_ = 0;  // seconds of this run
   std::mutex report_mutex_;
 };
 
@@ -384,6 +473,13 @@ class ProgressiveSolver {
 Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& control) {
   if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
   return ProgressiveSolver(std::move(scene), options, control).Run();
+}
+
+Solution Resume(Solution state, const SolveControl& control) {
+  if (const std::string wrong = state.options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
+  // Nothing was worth keeping: emission is a step like any other, done or not.
+  if (state.history.empty()) return Solve(std::move(state.scene), state.options, control);
+  return ProgressiveSolver(std::move(state), control).Continue();
 }
 
 }  // namespace lobe

@@ -32,11 +32,22 @@ struct SolveControl {
   /// Set by a signal handler: the solver finishes nothing more and returns what it has, with kInterrupted.
   const std::atomic<bool>* stop = nullptr;
   TimeSplit* time_split = nullptr;
+  /// Called between steps with a solution that is whole (kUnfinished): it renders, and Resume continues it.
+  /// At least `checkpoint_seconds` apart (0: never) and ten times as long as a call takes; for the first time
+  /// after emission, unless that was quick.
+  std::function<void(const Solution&)> checkpoint;
+  double checkpoint_seconds = 60;
 };
 
 /// Solves `scene`: exposure, tessellation, lobes, then progressive shooting until a limit of `options`.
 /// A solution that did not converge is a result with a reason. Throws InputError if nothing emits light,
 /// std::invalid_argument if options.Validate() complains. Same bits for any number of threads.
 Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& control = {});
+
+/// Continues a solution that stopped early, with its own settings; of these the limits (`residual`,
+/// `max_steps`, `max_seconds`, which counts this run alone) may be changed before. Links are traced anew, as
+/// they were. The result has the bits of the run that was never stopped, seconds aside; a solution whose
+/// limits are reached comes back at once. Throws InputError if `state` cannot be continued.
+Solution Resume(Solution state, const SolveControl& control = {});
 
 }  // namespace lobe
