@@ -35,6 +35,9 @@ const std::map<std::string, Value>& Settings() {
        [](const SolveOptions& o) {
          return o.lobes.force_l_max < 0 ? std::string("none") : std::to_string(o.lobes.force_l_max);
        }},
+      {"--refine-error", [](const SolveOptions& o) { return Number(100 * o.refine.error); }},
+      {"--refine-rounds", [](const SolveOptions& o) { return std::to_string(o.refine.rounds); }},
+      {"--max-nodes", [](const SolveOptions& o) { return std::to_string(o.refine.max_nodes); }},
       {"--transport",
        [](const SolveOptions& o) {
          // Two names of one thing.

@@ -26,10 +26,12 @@ struct SolveFlags {
   SolveOptions options;
   LobeFlags lobes;
   double checkpoint_seconds = SolveControl{}.checkpoint_seconds;
+  double refine_error_percent = 100 * RefineOptions{}.error;
 };
 
 void Validate(SolveFlags& flags) {
   flags.options.lobes = flags.lobes.Options();
+  flags.options.refine.error = flags.refine_error_percent / 100;
   if (const std::string wrong = flags.options.Validate(); !wrong.empty()) throw UsageError(wrong);
   if (!(flags.checkpoint_seconds >= 0)) {
     throw UsageError("--checkpoint-seconds: " + Short(flags.checkpoint_seconds) +
@@ -120,9 +122,10 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
   out["solve_seconds"] = s.solve_seconds;
   out["resumed"] = s.resumed;
   out["cpu_seconds"] = cpu_seconds;
-  out["time_split"] = {{"choosing", split.choosing},
-                       {"rays", split.rays},
-                       {"accumulation", split.accumulation},
+  out["time_split"] = {{"preparation", split.preparation},
+                       {"emission", split.emission},
+                       {"links", split.links},
+                       {"reflection", split.reflection},
                        {"lobe_reads", split.lobe_reads},
                        {"lobe_writes", split.lobe_writes}};
   out["warnings"] = s.scene.warnings;
@@ -220,6 +223,17 @@ void AddSolveCommand(CLI::App& app, Command* command) {
   SolveOptions& o = flags->options;
   solve->add_option("--edge", o.mesh.max_edge, "Longest edge of an element, metres")
       ->type_name("M")
+      ->capture_default_str();
+  solve
+      ->add_option("--refine-error", flags->refine_error_percent,
+                   "Split elements where light bends by more, percent of the brightness there; 0: never")
+      ->type_name("PCT")
+      ->capture_default_str();
+  solve->add_option("--refine-rounds", o.refine.rounds, "Rounds of splitting; two of them halve an edge")
+      ->type_name("N")
+      ->capture_default_str();
+  solve->add_option("--max-nodes", o.refine.max_nodes, "Split no further beyond so many nodes")
+      ->type_name("N")
       ->capture_default_str();
   flags->lobes.AddTo(solve);
   const std::map<std::string, Transport> transports = {

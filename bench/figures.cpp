@@ -13,6 +13,8 @@
 
 #include <tbb/global_control.h>
 
+#include "brdf/frame.h"
+#include "render/path_tracing.h"
 #include "scene/gltf_scene.h"
 #include "scene/refine.h"
 #include "scene/sample_points.h"
@@ -23,6 +25,7 @@
 #include "solver/shooting.h"
 #include "solver/solver.h"
 #include "tests/support/adaptive_albedo.h"
+#include "tests/support/block_z_scores.h"
 #include "tests/support/gloss_furnace.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/truth.h"
@@ -472,70 +475,6 @@ void Accumulation() {
   }
 }
 
-// One thread: gathering emission and the first reflected step, against Embree alone over the very same rays.
-void Split() {
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  std::printf(
-      "| scene | rays | million rays/s, Embree alone | gathering over Embree alone, median of 5 | cutting "
-      "and lobe reads | rays | accumulation |\n"
-      "|---|---|---|---|---|---|---|\n");
-  for (const char* name : kBoxes) {
-    SolveOptions o;
-    o.max_steps = 0;
-    const Solution s = SolveFile(name, o).solution;
-    const RayTracer tracer(s.scene);
-    TableCache cache;
-    std::vector<MaterialLobes> materials;
-    for (const auto& m : s.scene.materials) materials.emplace_back(m.reflectance, o.lobes, cache);
-    const ShootingField emission(s.mesh, FindEmitters(s.scene));
-    const ShootingField reflected(s.scene, s.mesh, s.hidden, s.unshot);
-    Receiver receiver(s.mesh, tracer, materials);
-    std::vector<float> out(size_t(3) * 2 * kMaxBasisSize);
-    std::vector<std::vector<Ray>> rays;
-    Received timed_sum;
-    uint64_t count = 0;
-    const auto gather = [&](bool record, bool timed) {
-      for (const auto* field : {&emission, &reflected}) {
-        for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
-          if (s.hidden[n]) continue;
-          std::fill(out.begin(), out.end(), 0.0f);
-          const Received r =
-              receiver.Gather(n, *field, field == &emission ? o.light_samples : o.delta_areas,
-                              field == &emission ? 0.0f : s.direct.Flux(n).sum(), 1, out.data(), timed);
-          timed_sum.seconds_choosing += r.seconds_choosing;
-          timed_sum.seconds_rays += r.seconds_rays;
-          timed_sum.seconds_accumulating += r.seconds_accumulating;
-          if (record) {
-            rays.emplace_back(receiver.last_rays().begin(), receiver.last_rays().end());
-            count += r.rays;
-          }
-        }
-      }
-    };
-    gather(true, true);
-    const double whole = timed_sum.seconds_choosing + timed_sum.seconds_rays + timed_sum.seconds_accumulating;
-    std::vector<double> ratios, rates;
-    for (int run = 0; run < 5; ++run) {
-      const double t0 = CpuSeconds();
-      gather(false, false);
-      const double t1 = CpuSeconds();
-      std::vector<uint8_t> occluded;
-      for (const auto& r : rays) {
-        occluded.resize(r.size());
-        tracer.Occluded(r, occluded, true);
-      }
-      const double t2 = CpuSeconds();
-      ratios.push_back((t1 - t0) / (t2 - t1));
-      rates.push_back(double(count) / (t2 - t1) * 1e-6);
-    }
-    std::sort(ratios.begin(), ratios.end());
-    std::sort(rates.begin(), rates.end());
-    std::printf("| %s | %.2f M | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% |\n", name, double(count) * 1e-6,
-                rates[2], ratios[2], 100 * timed_sum.seconds_choosing / whole,
-                100 * timed_sum.seconds_rays / whole, 100 * timed_sum.seconds_accumulating / whole);
-  }
-}
-
 // --- mesh ------------------------------------------------------------------------------------------------
 
 // A box of one and a half million elements, some of them asked for by chance.
@@ -561,6 +500,103 @@ void RefinementSpeed() {
   }
 }
 
+// Path and shadow rays as paths trace them, in turn: directions by the cosine, targets evenly over the lamps'
+// triangles.
+void RecordRays(const Scene& scene, const RayTracer& tracer, std::vector<Ray>* path,
+                std::vector<Ray>* shadow) {
+  std::vector<uint32_t> lamps;
+  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
+    if (scene.material(scene.faces[f]).emits()) lamps.push_back(f);
+  }
+  RandomStream random(5);
+  const Camera& camera = scene.cameras[0];
+  while (path->size() < 300000) {
+    Ray ray = CameraView(camera, 256, 256).EyeRay(256 * random.Next(), 256 * random.Next());
+    for (int bounce = 0; bounce < 12; ++bounce) {
+      const RayHit hit = tracer.Intersect(ray);
+      if (!hit.hit() || hit.side == Side::kBack) break;
+      const auto p = scene.Corners(scene.faces[hit.face]);
+      const Vec3 n = scene.GeometricNormal(scene.faces[hit.face]);
+      const Vec3 from = (1 - hit.u - hit.v) * p[0] + hit.u * p[1] + hit.v * p[2] + n * tracer.epsilon();
+      const auto q = scene.Corners(scene.faces[lamps[random.NextBits() % lamps.size()]]);
+      const float s = std::sqrt(random.Next()), t = random.Next();
+      const Vec3 to = (1 - s) * q[0] + s * (1 - t) * q[1] + s * t * q[2];
+      if (n.dot(to - from) > 0) shadow->push_back({from, 0, to - from, 1 - 1e-5f});
+      const float r = std::sqrt(random.Next()), phi = 2 * float(kPi) * random.Next();
+      ray = {from, 0, Frame(n).ToWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)}),
+             std::numeric_limits<float>::infinity()};
+      path->push_back(ray);
+    }
+  }
+}
+
+void Paths() {
+  std::printf(
+      "| scene | faces | rays a path | million rays/s of paths | of bare rays, one by one | paths over bare, "
+      "median of 5 |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const char* name : {"cornell_diffuse", "cornell_glossy", "glossy_floor", "lampshade"}) {
+    const Scene scene = ReadGltfScene(kTests + "/scenes/" + name + ".glb");
+    const PathTracer paths(scene);
+    const Camera& camera = scene.cameras[0];
+    std::vector<Ray> path, shadow;
+    RecordRays(scene, paths.tracer(), &path, &shadow);
+    std::vector<double> ratios, path_rates, bare_rates;
+    double rays_a_path = 0, sink = 0;
+    constexpr int kPaths = 40000;
+    for (int run = 0; run < 5; ++run) {
+      const double t0 = CpuSeconds();
+      uint64_t rays = 0;
+      RandomStream random(run);
+      const CameraView view(camera, 256, 256);
+      for (int i = 0; i < kPaths; ++i) {
+        sink += paths.Radiance(view.EyeRay(256 * random.Next(), 256 * random.Next()), random, &rays).sum();
+      }
+      const double t1 = CpuSeconds();
+      // As many of each kind as paths trace: one and one.
+      for (const Ray& ray : path) sink += paths.tracer().Intersect(ray).t;
+      const double t2 = CpuSeconds();
+      for (const Ray& ray : shadow) sink += paths.tracer().Occluded(ray);
+      const double t3 = CpuSeconds();
+      rays_a_path = double(rays) / kPaths;
+      path_rates.push_back(double(rays) / (t1 - t0) * 1e-6);
+      bare_rates.push_back(2e-6 / ((t2 - t1) / double(path.size()) + (t3 - t2) / double(shadow.size())));
+      ratios.push_back(path_rates.back() / bare_rates.back());
+    }
+    for (auto* list : {&ratios, &path_rates, &bare_rates}) std::sort(list->begin(), list->end());
+    std::printf("| %s | %zu | %.1f | %.2f | %.2f | %.0f %% |%s\n", name, scene.faces.size(), rays_a_path,
+                path_rates[2], bare_rates[2], 100 * ratios[2], sink == 0.125 ? " " : "");
+  }
+  std::printf(
+      "\n| view | CPU s a picture | pixel error | mean against the references' | largest block score (bound) "
+      "| rms of "
+      "scores | standard error of a block |\n|---|---|---|---|---|---|---|\n");
+  for (const char* name : kBoxes) {
+    const Scene scene = ReadGltfScene(kTests + "/scenes/" + name + ".glb");
+    const PathTracer paths(scene);
+    for (const Camera& camera : scene.cameras) {
+      const std::string truth = kTests + "/truth/" + name + "." + camera.name;
+      const Image a = ReadExr(truth + ".a.exr"), b = ReadExr(truth + ".b.exr");
+      const Mask mask = ReadPngMask(truth + ".mask.png");
+      RenderOptions o;
+      o.width = a.width;
+      o.height = a.height;
+      o.samples_per_pixel = 64;
+      const CameraView view(camera, a.width, a.height);
+      const double start = CpuSeconds();
+      const Image c = RenderPathTraced(paths, view, o);
+      o.seed = 2;
+      const Image d = RenderPathTraced(paths, view, o);
+      const double seconds = 0.5 * (CpuSeconds() - start);
+      const test::BlockZScores z(c, d, a, b, mask);
+      std::printf("| %s %s | %.1f | %.1f %% | %+.2f ± %.2f %% | %.2f (%.2f) | %.2f | %.1f %% |\n", name,
+                  camera.name.c_str(), seconds, 100 * Compare(c, a, &b, &mask).pixel_error,
+                  100 * z.mean_error, 100 * z.mean_standard_error, z.worst, z.bound, z.rms,
+                  100 * z.relative_error);
+    }
+  }
+}
+
 const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"basis", Basis},
                                                                             {"degree", Degree},
                                                                             {"flux", Flux},
@@ -576,8 +612,8 @@ const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"ba
                                                                             {"lobe-error", LobeError},
                                                                             {"residual", Residual},
                                                                             {"accumulation", Accumulation},
-                                                                            {"split", Split},
-                                                                            {"refinement", RefinementSpeed}};
+                                                                            {"refinement", RefinementSpeed},
+                                                                            {"paths", Paths}};
 
 }  // namespace
 }  // namespace lobe

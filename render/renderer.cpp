@@ -1,64 +1,17 @@
 #include "render/renderer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <numbers>
 #include <sstream>
-#include <stdexcept>
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include "brdf/frame.h"
-#include "solver/hash.h"
+#include "render/eye_rays.h"
 
 namespace lobe {
-namespace {
-
-constexpr int kTile = 8;  // pixels a side; their rays are traced together
-
-// Inverse of the cumulative filter, one axis, tabulated.
-class FilterSampler {
- public:
-  explicit FilterSampler(PixelFilter filter) {
-    if (filter == PixelFilter::kBox) return;
-    // Blackman-Harris window, 4 terms, over [-1.5, 1.5] pixels.
-    constexpr int kSteps = 1024;
-    constexpr double kRadius = 1.5;
-    std::vector<double> cumulative(kSteps + 1, 0.0);
-    for (int i = 0; i < kSteps; ++i) {
-      const double x = 2.0 * std::numbers::pi * (i + 0.5) / kSteps;
-      cumulative[i + 1] = cumulative[i] + 0.35875 - 0.48829 * std::cos(x) + 0.14128 * std::cos(2 * x) -
-                          0.01168 * std::cos(3 * x);
-    }
-    for (int i = 0, at = 0; i <= kInverse; ++i) {
-      const double target = cumulative.back() * i / kInverse;
-      while (at < kSteps - 1 && cumulative[at + 1] < target) ++at;
-      const double step = cumulative[at + 1] - cumulative[at];
-      const double u = step > 0 ? std::clamp((target - cumulative[at]) / step, 0.0, 1.0) : 0.0;
-      inverse_.push_back(float(((at + u) / kSteps * 2.0 - 1.0) * kRadius));
-    }
-  }
-  /// Offset from the pixel's centre.
-  float Offset(float u) const {
-    if (inverse_.empty()) return u - 0.5f;
-    const float s = u * kInverse;
-    const int i = std::min(int(s), kInverse - 1);
-    return inverse_[i] + (s - float(i)) * (inverse_[i + 1] - inverse_[i]);
-  }
-
- private:
-  static constexpr int kInverse = 512;
-  std::vector<float> inverse_;
-};
-
-}  // namespace
-
 std::string RenderOptions::Validate() const {
   std::ostringstream out;
   if (width < 1 || height < 1 || width > 65536 || height > 65536) {
@@ -155,12 +108,10 @@ Rgb Renderer::Radiance(const Ray& ray) const {
 
 Image Renderer::Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                        const std::function<bool(double)>& progress) const {
-  if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
   const auto start = std::chrono::steady_clock::now();
+  const EyeRays eye_rays(view, options);
+  const int samples = eye_rays.per_pixel();
   Image image(options.width, options.height);
-  const int side = int(std::ceil(std::sqrt(double(options.samples_per_pixel))));
-  const int samples = side * side;
-  const FilterSampler filter(options.filter);
 
   struct Scratch {
     std::vector<Ray> rays;
@@ -168,35 +119,21 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
     std::vector<float> basis = std::vector<float>(kMaxBasisSize);
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  const int tiles_x = (options.width + kTile - 1) / kTile, tiles_y = (options.height + kTile - 1) / kTile;
-  std::vector<Impl::Sums> sums(size_t(tiles_x) * tiles_y);
-  std::atomic<int> done{0};
-  std::atomic<bool> stop{false};
-  std::mutex progress_mutex;
+  std::vector<Impl::Sums> sums(TileCount(options.width, options.height));
 
-  tbb::parallel_for(0, tiles_x * tiles_y, [&](int tile) {
-    if (stop.load(std::memory_order_relaxed)) return;
+  const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
-    const int x0 = tile % tiles_x * kTile, y0 = tile / tiles_x * kTile;
-    const int x1 = std::min(x0 + kTile, options.width), y1 = std::min(y0 + kTile, options.height);
     scratch.rays.clear();
-    for (int y = y0; y < y1; ++y) {
-      for (int x = x0; x < x1; ++x) {
-        RandomStream random(Mix(Mix(options.seed, 0xca3), uint64_t(y) * options.width + x));
-        for (int s = 0; s < samples; ++s) {
-          const float u = (float(s % side) + random.Next()) / side,
-                      v = (float(s / side) + random.Next()) / side;
-          scratch.rays.push_back(view.EyeRay(x + 0.5f + filter.Offset(u), y + 0.5f + filter.Offset(v)));
-        }
-      }
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) eye_rays.Append(x, y, &scratch.rays);
     }
     scratch.hits.resize(scratch.rays.size());
     impl_->tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
-    Impl::Sums& sum = sums[tile];
+    Impl::Sums& sum = sums[tile.index];
     sum.rays += scratch.rays.size();
     size_t ray = 0;
-    for (int y = y0; y < y1; ++y) {
-      for (int x = x0; x < x1; ++x) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
         Rgb pixel = Rgb::Zero();
         for (int s = 0; s < samples; ++s, ++ray) {
           pixel += impl_->Shade(scratch.rays[ray], scratch.hits[ray], options.max_mirror_depth,
@@ -206,12 +143,8 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
         sum.shown += pixel.sum();
       }
     }
-    const int finished = ++done;
-    if (progress) {
-      const std::unique_lock lock(progress_mutex, std::try_to_lock);
-      if (lock.owns_lock() && !progress(double(finished) / (tiles_x * tiles_y))) stop = true;
-    }
-  });
+  };
+  const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
 
   if (report) {
     *report = {};
@@ -225,7 +158,7 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
     report->clamped = shown > 0 ? clamped / shown : 0;
     // Light behind the last mirror is taken to be as bright as the picture.
     report->cut_off = cut / (3.0 * double(samples) * options.width * options.height);
-    report->complete = !stop;
+    report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
   return image;

@@ -18,6 +18,15 @@ Vec3d Cross(const std::array<Vec3, 3>& p) {
 
 Vec3 Scene::GeometricNormal(const Face& f) const { return Cross(Corners(f)).normalized().cast<float>(); }
 
+Vec3 Scene::CornerNormal(const Face& f, int corner) const {
+  constexpr float kGrazing = 1e-3f;  // chosen
+  const Vec3 geometric = GeometricNormal(f);
+  const Vec3& normal = normals[f.vertex[corner]];
+  const float cosine = normal.dot(geometric);
+  if (!(std::abs(cosine) > kGrazing)) return geometric;
+  return cosine > 0 ? normal : Vec3(-normal);
+}
+
 float Scene::Area(const Face& f) const { return static_cast<float>(0.5 * Cross(Corners(f)).norm()); }
 
 Eigen::AlignedBox3f Scene::Bounds() const {

@@ -55,6 +55,9 @@ struct Scene {
     return {positions[f.vertex[0]], positions[f.vertex[1]], positions[f.vertex[2]]};
   }
   Vec3 GeometricNormal(const Face& f) const;  ///< unit
+  /// Shading normal at a corner (0..2) of a face, on the front: one that points behind the face is turned,
+  /// one that lies in its plane replaced by the geometric normal.
+  Vec3 CornerNormal(const Face& f, int corner) const;
   float Area(const Face& f) const;
   Eigen::AlignedBox3f Bounds() const;
   /// Throws InputError naming the camera asked for and those there are.

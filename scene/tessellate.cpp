@@ -104,16 +104,6 @@ void CheckSize(const Scene& scene, const Eigen::AlignedBox3f& bounds, const std:
   }
 }
 
-/// Shading normal at a corner of a face, on the front: one that points behind the face is turned, one that
-/// lies in its plane replaced.
-Vec3 CornerNormal(const Scene& scene, const Face& face, int k, const Vec3& geometric) {
-  constexpr float kGrazing = 1e-3f;  // chosen
-  const Vec3& normal = scene.normals[face.vertex[k]];
-  const float cosine = normal.dot(geometric);
-  if (!(std::abs(cosine) > kGrazing)) return geometric;
-  return cosine > 0 ? normal : Vec3(-normal);
-}
-
 /// The same triangles seen from behind: corners 1 and 2 change places, and so do the two halves of a cut.
 void Flip(Bisection* bisection) {
   for (Vec3& n : bisection->normal) n = -n;
@@ -132,9 +122,8 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
   triangles.reserve(group.size());
   for (const FaceSide& s : group) {
     const Face& face = scene.faces[s.face];
-    const Vec3 geometric = scene.GeometricNormal(face);
     std::array<Vec3, 3> position = scene.Corners(face), normal;
-    for (int k = 0; k < 3; ++k) normal[k] = CornerNormal(scene, face, k, geometric);
+    for (int k = 0; k < 3; ++k) normal[k] = scene.CornerNormal(face, k);
     std::array<uint32_t, 3> corner;
     for (int k = 0; k < 3; ++k) corner[k] = welder.Add(position[k], normal[k]);
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {

@@ -1,7 +1,6 @@
 #include "solver/link_gather.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -11,9 +10,6 @@ namespace lobe {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-
-using Clock = std::chrono::steady_clock;
-double Seconds(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
 
 // Which sector of a ring a thinned sweep starts with: rings next to each other start apart.
 int FirstSector(int ring, int thinning) { return thinning == 1 ? 0 : (5 * ring) % thinning; }
@@ -101,9 +97,8 @@ void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ri
   }
 }
 
-Received LinkReceiver::Gather(uint32_t node, const LinkField& field, int thinning, float* out, bool timed) {
+Received LinkReceiver::Gather(uint32_t node, const LinkField& field, int thinning, float* out) {
   Received work;
-  const auto start = timed ? Clock::now() : Clock::time_point();
   const uint32_t patch = mesh_.node_patch[node];
   const MaterialLobes& material = materials_[mesh_.patches[patch].material];
   const LinkPattern& pattern = links_.pattern(patch);
@@ -151,7 +146,6 @@ Received LinkReceiver::Gather(uint32_t node, const LinkField& field, int thinnin
     moments_.Finish(out, out + 3 * material.base.count());
   }
   work.absorbed = work.delivered - work.reflected - work.mirrored - work.through;
-  if (timed) work.seconds_accumulating = Seconds(start);
   return work;
 }
 

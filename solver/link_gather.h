@@ -50,7 +50,7 @@ class LinkReceiver {
   /// Adds the light that leaves `node` for what its links bring to `out` (layout of NodeLobes), and what a
   /// sheet lets through to `received.through`. `thinning` 1, 2, 4 or 8: uses every so many-th direction of
   /// each ring.
-  Received Gather(uint32_t node, const LinkField& field, int thinning, float* out, bool timed);
+  Received Gather(uint32_t node, const LinkField& field, int thinning, float* out);
 
  private:
   LinkDirections& Directions(const LinkPattern& pattern);

@@ -86,6 +86,12 @@ struct Links::Tracing {
     return 6 * where.element + DrawOrder(where.weight, random.Next());
   }
 
+  bool ShotByMirror(uint32_t patch, const Face& emitter) const {
+    return std::any_of(options.planar_mirrors.begin(), options.planar_mirrors.end(), [&](const PlanarMirror& m) {
+      return m.patch == patch && scene.Area(emitter) < m.largest_emitter;
+    });
+  }
+
   void TraceNode(uint32_t node, const LinkPattern& pattern, Scratch& scratch, std::span<uint32_t> out,
                  std::vector<Hop>& hops) const {
     LinkDirections& directions = scratch.For(pattern);
@@ -124,7 +130,7 @@ struct Links::Tracing {
                       std::vector<Hop>& hops) const {
     const uint32_t begin = uint32_t(hops.size());
     Rgb throughput = Rgb::Constant(1);
-    uint32_t last_mirror = kNone;
+    uint32_t last_mirror = kNone;  // patch
     for (int mirrors = 0;; ++mirrors) {
       Hop hop{};
       hop.direction = PackDirection(-ray.direction);
@@ -141,8 +147,7 @@ struct Links::Tracing {
       const auto where = locator.Locate(hit);
       hop.node = End(where, random);
       // Straight emission travels by shooting, and by way of one planar mirror too.
-      const bool by_shooting =
-          mirrors == 0 || (mirrors == 1 && options.emission_by_shooting && options.emission_by_shooting(last_mirror));
+      const bool by_shooting = mirrors == 0 || (mirrors == 1 && ShotByMirror(last_mirror, face));
       hop.emission = !by_shooting && hop.node != kBlocked && scene.materials[face.material].emits();
       const bool goes_on = hop.node != kBlocked && mirror[face.material];
       if (!goes_on || mirrors == kMaxMirrors) {
@@ -160,19 +165,22 @@ struct Links::Tracing {
              std::numeric_limits<float>::infinity()};
       hit = tracer.Intersect(ray);
       ++scratch.traced;
-      last_mirror = face.material == kNone ? kNone : uint32_t(&face - scene.faces.data());
+      last_mirror = mesh.element_patch[where.element];
     }
     return kChain | begin;
   }
 };
+
+LinkPattern Links::PatternOf(const MaterialLobes& material, int links) {
+  return LinkPattern::For(links, material.diffuse() ? 0 : material.max_degree(), kPerCoefficient);
+}
 
 size_t Links::EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
                             const Options& options) {
   size_t links = 0;
   for (const auto& p : mesh.patches) {
     const auto& m = materials[p.material];
-    links += size_t(p.node_end - p.node_begin) *
-             LinkPattern::For(options.links, m.diffuse() ? 0 : m.max_degree(), options.per_coefficient).count();
+    links += size_t(p.node_end - p.node_begin) * PatternOf(m, options.links).count();
   }
   return links * sizeof(uint32_t);
 }
@@ -186,8 +194,7 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
   size_t links = 0;
   for (const auto& p : mesh.patches) {
     const auto& m = materials[p.material];
-    const auto pattern =
-        LinkPattern::For(options.links, m.diffuse() ? 0 : m.max_degree(), options.per_coefficient);
+    const LinkPattern pattern = PatternOf(m, options.links);
     patches_.push_back({pattern, links, p.node_begin});
     links += size_t(p.node_end - p.node_begin) * pattern.count();
   }

@@ -11,6 +11,7 @@
 #include "scene/ray_tracer.h"
 #include "scene/scene.h"
 #include "solver/link_pattern.h"
+#include "solver/planar_mirrors.h"
 
 namespace lobe {
 
@@ -50,13 +51,16 @@ class Links {
   /// between them; the ledger says how much it was.
   static constexpr int kMaxMirrors = 16;
 
+  /// Fewer links than this for each coefficient of a glossy node's lobe, and noise shows as blotches
+  /// (docs/validation.md#links).
+  static constexpr int kPerCoefficient = 8;
+
   struct Options {
-    int links = 256;          ///< per diffuse node; glossy ones take at least per_coefficient x coefficients
-    int per_coefficient = 8;
+    int links = 512;  ///< per diffuse node; glossy ones take kPerCoefficient for each coefficient if that is more
     bool follow_mirrors = true;
     uint64_t seed = 1;
-    /// Does shooting bring an emitter's light by way of this mirror face? Then links leave it out.
-    std::function<bool(uint32_t face)> emission_by_shooting = {};
+    /// By way of these shooting brings light of small emitters: links leave that out.
+    std::vector<PlanarMirror> planar_mirrors = {};
   };
 
   /// Traces all links. `stop` is asked from time to time; if it says so, the object is useless (stopped()).
@@ -78,6 +82,7 @@ class Links {
   uint64_t rays() const { return rays_; }
   size_t count() const { return targets_.size(); }
   size_t bytes() const { return targets_.size() * sizeof(uint32_t) + hops_.size() * sizeof(Hop); }
+  static LinkPattern PatternOf(const MaterialLobes& material, int links);
   /// Bytes that links of `mesh` would take, chains aside.
   static size_t EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
                               const Options& options);

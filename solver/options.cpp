@@ -25,6 +25,12 @@ std::string SolveOptions::Validate() const {
     out << "crease angle " << mesh.crease_angle << " is out of range: 0 to pi radians is expected";
   } else if (!(mesh.border_inset >= 0) || !(mesh.border_inset <= 1)) {
     out << "border inset " << mesh.border_inset << " is out of range: 0 to 1 is expected";
+  } else if (!(refine.error >= 0) || !(refine.error <= 10)) {
+    out << "refine error " << refine.error * 100 << " % is out of range: 0 to 1000 is expected";
+  } else if (refine.rounds < 0 || refine.rounds > 16) {
+    out << "refine rounds " << refine.rounds << " is out of range: 0 to 16 is expected";
+  } else if (refine.max_nodes < 1) {
+    out << "max nodes " << refine.max_nodes << " is out of range: 1 or more is expected";
   } else if (lobes.l_max < 0 || lobes.l_max > 32) {
     out << "lmax " << lobes.l_max << " is out of range: 0 to 32 is expected";
   } else if (lobes.force_l_max < -1 || lobes.force_l_max > 32) {

@@ -5,6 +5,7 @@
 
 #include "brdf/material_lobes.h"
 #include "scene/tessellate.h"
+#include "solver/refinement.h"
 
 namespace lobe {
 
@@ -18,12 +19,13 @@ const char* Name(Transport transport);
 
 struct SolveOptions {
   TessellateOptions mesh;
+  RefineOptions refine;
   LobeOptions lobes;
   Transport transport = Transport::kAuto;
   /// Links per diffuse node, >= 8; glossy nodes take more, in proportion to the coefficients of their lobes.
   /// Time and memory (4 bytes a link) grow in proportion; noise falls a little faster than the square root.
   /// Default measured in docs/validation.md#links.
-  int links = 256;
+  int links = 512;
   /// Shoot ahead what a coarse solution expects, and use fewer links for dim late bounces. Off: plain sweeps,
   /// slower, to check these against.
   bool accelerate = true;

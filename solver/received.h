@@ -13,7 +13,6 @@ struct Received {
   Rgb through = Rgb::Zero();    ///< leaves the other side of a translucent sheet
   uint64_t rays = 0;
   uint64_t lobe_reads = 0, lobe_writes = 0;  ///< directional evaluations and accumulations
-  double seconds_choosing = 0, seconds_rays = 0, seconds_accumulating = 0;
 
   Received& operator+=(const Received& other);
 };
@@ -27,9 +26,6 @@ inline Received& Received::operator+=(const Received& other) {
   rays += other.rays;
   lobe_reads += other.lobe_reads;
   lobe_writes += other.lobe_writes;
-  seconds_choosing += other.seconds_choosing;
-  seconds_rays += other.seconds_rays;
-  seconds_accumulating += other.seconds_accumulating;
   return *this;
 }
 

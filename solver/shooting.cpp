@@ -1,7 +1,6 @@
 #include "solver/shooting.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -85,13 +84,27 @@ StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, cons
   return chosen;
 }
 
-using Clock = std::chrono::steady_clock;
-double Seconds(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
-
 }  // namespace
 
 ShootingField::ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters) : mesh_(&mesh) {
   for (const auto& e : emitters) roots_.push_back({e.corners, e.normal, e.radiance, kNone, false});
+}
+
+ShootingField::ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters,
+                             std::vector<PlanarMirror> mirrors)
+    : mesh_(&mesh), mirrors_(std::move(mirrors)) {
+  for (uint32_t m = 0; m < mirrors_.size(); ++m) {
+    const PlanarMirror& mirror = mirrors_[m];
+    for (const auto& e : emitters) {
+      const auto above = [&](const Vec3& p) { return mirror.normal.dot(p - mirror.point) > 0; };
+      if (e.area >= mirror.largest_emitter) continue;
+      if (std::none_of(e.corners.begin(), e.corners.end(), above)) continue;
+      // Reflection turns the winding round.
+      const Vec3 normal = e.normal - 2 * mirror.normal.dot(e.normal) * mirror.normal;
+      roots_.push_back({{mirror.Image(e.corners[0]), mirror.Image(e.corners[2]), mirror.Image(e.corners[1])},
+                        normal, e.radiance, kNone, false, m});
+    }
+  }
 }
 
 ShootingField::ShootingField(const Scene& scene, const Mesh& mesh, const std::vector<uint8_t>& hidden,
@@ -213,7 +226,19 @@ void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root,
     ++work.lobe_reads;
   }
   rays_.push_back({from, 0.0f, to - from, 1.0f});
-  deltas_.push_back({light.direction, radiance * (light.irradiance * weight)});
+  deltas_.push_back({light.direction, radiance * (light.irradiance * weight), root.mirror});
+}
+
+Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
+  const RayHit hit = tracer_.Intersect(ray);
+  if (!hit.hit()) return Rgb::Zero();
+  const auto where = mesh_.Locate(hit.face, hit.side, hit.u, hit.v);
+  if (where.element == kNone || mesh_.element_patch[where.element] != mirror.patch) return Rgb::Zero();
+  const Vec3 at = ray.origin + ray.direction * hit.t + mirror.normal * tracer_.epsilon();
+  const Vec3 lamp = mirror.Image(ray.origin + ray.direction);
+  if (tracer_.Occluded({at, 0.0f, lamp - at, 1.0f})) return Rgb::Zero();
+  const float cosine = -ray.direction.normalized().dot(mirror.normal);
+  return materials_[mesh_.patches[mirror.patch].material].MirrorAlbedo(std::clamp(cosine, 0.0f, 1.0f));
 }
 
 void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float received_before,
@@ -278,22 +303,25 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
 }
 
 Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
-                          uint64_t seed, float* out, bool timed) {
+                          uint64_t seed, float* out) {
   Received work;
   deltas_.clear();
   rays_.clear();
-  const auto start = timed ? Clock::now() : Clock::time_point();
   Cut(node, field, samples, received_before, seed, work);
   work.rays = rays_.size();
   if (rays_.empty()) return work;
-  if (timed) work.seconds_choosing = Seconds(start);
 
-  const auto traced = timed ? Clock::now() : Clock::time_point();
   occluded_.resize(rays_.size());
-  tracer_.Occluded(rays_, occluded_, /*coherent=*/true);
-  if (timed) work.seconds_rays = Seconds(traced);
+  if (field.mirrors().empty()) {
+    tracer_.Occluded(rays_, occluded_, /*coherent=*/true);
+  } else {
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      deltas_[i].irradiance *= ByMirror(field.mirrors()[deltas_[i].mirror], rays_[i]);
+      occluded_[i] = (deltas_[i].irradiance <= 0).all();
+    }
+    work.rays = 2 * rays_.size();
+  }
 
-  const auto accumulated = timed ? Clock::now() : Clock::time_point();
   const MaterialLobes& material = materials_[mesh_.patches[mesh_.node_patch[node]].material];
   const Vec3& normal = mesh_.node_normal[node];
   if (material.diffuse()) {
@@ -330,7 +358,6 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
     moments_.Finish(out, out + 3 * material.base.count());
   }
   work.absorbed = work.delivered - work.reflected - work.mirrored - work.through;
-  if (timed) work.seconds_accumulating = Seconds(accumulated);
   return work;
 }
 

@@ -12,6 +12,7 @@
 #include "solver/form_factor.h"
 #include "solver/hash.h"
 #include "solver/node_lobes.h"
+#include "solver/planar_mirrors.h"
 #include "solver/received.h"
 #include "solver/solution.h"
 
@@ -24,6 +25,8 @@ class ShootingField {
  public:
   /// Emission.
   ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters);
+  /// Emission by way of one planar mirror: the emitters' images behind the mirrors.
+  ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters, std::vector<PlanarMirror> mirrors);
   /// Light reflected by nodes: `lobes` with zeros where a node does not shoot. `planar` patches share one
   /// basis evaluation. References to `mesh`, `hidden` and `lobes` are kept.
   ShootingField(const Scene& scene, const Mesh& mesh, const std::vector<uint8_t>& hidden,
@@ -35,10 +38,12 @@ class ShootingField {
     Rgb radiance;   ///< mean over the cell
     uint32_t cell;  ///< kNone for an emitter
     bool glossy;    ///< radiance depends on direction: read lobes
+    uint32_t mirror = kNone;  ///< of a mirrored emitter: index into mirrors()
   };
   const std::vector<Root>& roots() const { return roots_; }
   const Rgb& cell_radiance(uint32_t cell) const { return cell_radiance_[cell]; }
   bool emission() const { return lobes_ == nullptr; }
+  const std::vector<PlanarMirror>& mirrors() const { return mirrors_; }
 
   /// Radiance of a point of `element`, given by weights, towards `wo_world`. `basis` is scratch.
   Rgb Radiance(uint32_t element, const float weight[3], const Vec3& wo_world, float* basis) const;
@@ -48,6 +53,7 @@ class ShootingField {
   const std::vector<uint8_t>* hidden_ = nullptr;
   const NodeLobes* lobes_ = nullptr;
   std::vector<Root> roots_;
+  std::vector<PlanarMirror> mirrors_;
   std::vector<Rgb> cell_radiance_;
 };
 
@@ -61,9 +67,9 @@ class Receiver {
   /// one shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes,
   /// zeroed by the caller). `received_before`: sum over channels of the irradiance so far; cells that bring
   /// less than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
-  /// `seed` decides which point of a cell stands for it. `timed`: fill the seconds.
+  /// `seed` decides which point of a cell stands for it.
   Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
-                  uint64_t seed, float* out, bool timed);
+                  uint64_t seed, float* out);
 
   /// The shadow rays of the last Gather, for measuring what tracing them alone costs (bench/).
   std::span<const Ray> last_rays() const { return rays_; }
@@ -82,7 +88,10 @@ class Receiver {
   struct Delta {
     Vec3 direction;
     Rgb irradiance;
+    uint32_t mirror;
   };
+  // Fresnel factor of the way over `mirror` to the image that a ray ends at; black where something is in it.
+  Rgb ByMirror(const PlanarMirror& mirror, const Ray& ray) const;
   void Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
            Received& work);
   void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,

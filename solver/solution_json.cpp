@@ -65,6 +65,9 @@ json Settings(const SolveOptions& o) {
               {"borderInset", JsonNumber(o.mesh.border_inset)},
               {"lMax", o.lobes.l_max},
               {"lobeError", o.lobes.error},
+              {"refineError", o.refine.error},
+              {"refineRounds", o.refine.rounds},
+              {"maxNodes", o.refine.max_nodes},
               {"transport", Name(o.transport)},
               {"links", o.links},
               {"accelerate", o.accelerate},
@@ -87,6 +90,9 @@ SolveOptions ReadSettings(const GltfJson& fields) {
   o.lobes.l_max = RequiredInt(fields, "lMax");
   o.lobes.error = RequiredNumber(fields, "lobeError");
   o.lobes.force_l_max = fields.Has("forceLMax") ? RequiredInt(fields, "forceLMax") : -1;
+  o.refine.error = RequiredNumber(fields, "refineError");
+  o.refine.rounds = RequiredInt(fields, "refineRounds");
+  o.refine.max_nodes = fields.RequiredWhole("maxNodes");
   o.transport = ReadName(fields, "transport", kTransports);
   o.links = RequiredInt(fields, "links");
   o.accelerate = fields.Bool("accelerate", true);

@@ -21,6 +21,8 @@
 #include "solver/link_gather.h"
 #include "solver/links.h"
 #include "solver/losses.h"
+#include "solver/planar_mirrors.h"
+#include "solver/refinement.h"
 #include "solver/resume.h"
 #include "solver/shooting.h"
 
@@ -29,10 +31,6 @@ namespace {
 
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
-
-// A glossy node takes this many links per coefficient of its lobe, or noise shows as blotches
-// (docs/validation.md#links).
-constexpr int kLinksPerCoefficient = 8;
 
 // Shooting needs links only to see which nodes are hidden and where light is lost.
 constexpr int kProbes = 64;
@@ -72,25 +70,46 @@ class ProgressiveSolver {
       s_.stop_reason = *reason;
       return std::move(s_);
     }
-    if (!PrepareToContinue()) {
+    TimeSplit unwanted, &split = control_.time_split ? *control_.time_split : unwanted;
+    const bool ready = PrepareToContinue();
+    split.links += SecondsOfRun();
+    if (!ready) {
       // The state is as good as it was, its ledger too.
       s_.stop_reason = WhyStop();
       return std::move(s_);
     }
     ++s_.resumed;
+    const double since = SecondsOfRun();
     s_.stop_reason = Iterate();
+    split.reflection += SecondsOfRun() - since;
     Close();
     return std::move(s_);
   }
 
   Solution Run() {
+    TimeSplit unwanted, &split = control_.time_split ? *control_.time_split : unwanted;
+    double since = 0;
+    const auto lap = [&](double& phase) {
+      const double now = Seconds();
+      phase += now - since;
+      since = now;
+    };
     Prepare();
-    if (Emission() && TraceLinks() && EmissionByMirrors()) {
+    lap(split.preparation);
+    bool through = Emission();
+    lap(split.emission);
+    through = through && TraceLinks();
+    lap(split.links);
+    through = through && EmissionByMirrors();
+    if (through) {
       s_.direct = s_.total;
       s_.stop_reason = Iterate();
+      lap(split.reflection);
     } else {
       // Told to stop before emission was through: all of it is still to be shot.
-      for (NodeLobes* lobes : {&s_.total, &s_.direct, &s_.unshot}) lobes->SetZero();
+      gained_.SetZero();
+      s_.total = s_.direct = s_.unshot = gained_;
+      s_.hidden.assign(s_.mesh.node_count(), 0);
       s_.received = {};
       s_.ledger = {};
       s_.stop_reason = WhyStop();
@@ -114,10 +133,6 @@ class ProgressiveSolver {
     const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed);
     s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit);
     PrepareMaterials();
-    s_.total = s_.direct = s_.unshot = gained_ = NodeLobes(s_.mesh, Degrees());
-    s_.hidden.assign(s_.mesh.node_count(), 0);
-    if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
-    PrepareTransport();
   }
 
   // All that is not in the state follows from the scene, the mesh and the settings.
@@ -126,7 +141,8 @@ class ProgressiveSolver {
     const std::vector<PartDegrees> degrees = Degrees();
     CheckResumable(s_, degrees);
     gained_ = NodeLobes(s_.mesh, degrees);
-    PrepareTransport();
+    got_.resize(s_.mesh.node_count());
+    FindOpposite();
     const uint64_t rays = rays_;
     if (!TraceLinks()) return false;
     rays_ = rays;  // counted before
@@ -134,6 +150,7 @@ class ProgressiveSolver {
   }
 
   void PrepareMaterials() {
+    emitters_ = FindEmitters(s_.scene);
     s_.material_kinds.clear();
     s_.material_errors.clear();
     TableCache cache;
@@ -141,6 +158,9 @@ class ProgressiveSolver {
       materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
       s_.material_kinds.push_back(materials_.back().kind());
       s_.material_errors.push_back(materials_.back().gloss.error);
+    }
+    for (const auto& e : emitters_) {
+      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
     }
   }
 
@@ -153,29 +173,59 @@ class ProgressiveSolver {
     return degrees;
   }
 
-  void PrepareTransport() {
-    emitters_ = FindEmitters(s_.scene);
+  void FindOpposite() {
     const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
     if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
       opposite_ = OppositeNodes(s_.mesh, s_.scene);
     }
-    for (const auto& e : emitters_) {
-      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
-    }
   }
 
+  // Straight light of the emitters, on a mesh that is refined until it suits it.
   bool Emission() {
-    const ShootingField field(s_.mesh, emitters_);
-    return GatherShot(0, field, s_.options.light_samples);
+    const std::vector<PartDegrees> degrees = Degrees();
+    gained_ = NodeLobes(s_.mesh, degrees);
+    const auto shoot = [&](const std::vector<uint32_t>& nodes) {
+      if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
+      s_.hidden.assign(s_.mesh.node_count(), 0);
+      got_.resize(s_.mesh.node_count());
+      return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
+    };
+    if (!shoot(AllNodes())) return false;
+    const RefineOptions& options = s_.options.refine;
+    Refinement refined;
+    for (int round = 0; round < options.rounds && options.error > 0; ++round) {
+      const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
+      const Roughness roughness(s_.mesh, gained_, area);
+      const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
+                                                     : roughness.AtMidpoints(refined, options.error);
+      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
+      if (refined.made.empty()) break;
+      gained_ = CarryOver(gained_, refined);
+      std::vector<Received> got(refined.mesh.node_count());
+      for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
+      got_ = std::move(got);
+      s_.mesh = std::move(refined.mesh);
+      if (!shoot(refined.made)) return false;
+    }
+    s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
+    FindOpposite();
+    return true;
+  }
+
+  std::vector<uint32_t> AllNodes() const {
+    std::vector<uint32_t> nodes(s_.mesh.node_count());
+    std::iota(nodes.begin(), nodes.end(), 0u);
+    return nodes;
   }
 
   // Also finds the hidden nodes, and takes from them what emission gave them.
   bool TraceLinks() {
     Links::Options options;
     options.links = by_links_ ? s_.options.links : kProbes;
-    options.per_coefficient = by_links_ ? kLinksPerCoefficient : 0;
     options.follow_mirrors = by_links_;
     options.seed = s_.options.seed;
+    if (by_links_) planar_mirrors_ = FindPlanarMirrors(s_.mesh, materials_, emitters_);
+    options.planar_mirrors = planar_mirrors_;
     links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
       Report(0, fraction);
       return MustStop();
@@ -190,26 +240,35 @@ class ProgressiveSolver {
     return true;
   }
 
+  // Light of the emitters by way of mirrors: over one planar mirror by shadow rays to their images, all else
+  // by links.
   bool EmissionByMirrors() {
     const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
       return m.kind() == GlossKind::kMirror;
     });
     if (by_links_ && mirrors) {
-      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
-        const auto gained = gained_.all(n);
-        std::copy(gained.begin(), gained.end(), s_.unshot.all(n).begin());
+      if (!planar_mirrors_.empty()) {
+        const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
+        if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); })) return false;
       }
-      std::vector<Received> first = std::move(got_);
-      if (!GatherLinked(0, LinkField(s_.scene, s_.mesh), 1)) return false;
-      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
-        auto gained = gained_.all(n);
-        auto straight = s_.unshot.all(n);
-        for (size_t i = 0; i < gained.size(); ++i) gained[i] += straight[i];
-        std::fill(straight.begin(), straight.end(), 0.0f);
-        got_[n] += first[n];
-      }
+      if (!AddGathered([&] { return GatherLinked(0, LinkField(s_.scene, s_.mesh), 1); })) return false;
     }
     Commit(0, {}, uint32_t(emitters_.size()));
+    return true;
+  }
+
+  // gather() replaces gained_ and got_; this adds to what they held.
+  template <typename Gather>
+  bool AddGathered(const Gather& gather) {
+    const NodeLobes before = gained_;
+    const std::vector<Received> got_before = got_;
+    if (!gather()) return false;
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+      const auto gained = gained_.all(n);
+      const auto had = before.all(n);
+      for (size_t i = 0; i < gained.size(); ++i) gained[i] += had[i];
+      got_[n] += got_before[n];
+    }
     return true;
   }
 
@@ -297,50 +356,49 @@ class ProgressiveSolver {
       shooters += std::any_of(shot.begin(), shot.end(), [](float v) { return v != 0; });
     }
     const ShootingField field(s_.scene, s_.mesh, s_.hidden, shooting_);
-    if (!GatherShot(step, field, s_.options.delta_areas)) return false;
+    if (!GatherShot(step, field, s_.options.delta_areas, AllNodes())) return false;
     Commit(step, {}, shooters);
     return true;
   }
 
-  bool GatherShot(int step, const ShootingField& field, int samples) {
+  bool GatherShot(int step, const ShootingField& field, int samples, const std::vector<uint32_t>& nodes) {
     tbb::enumerable_thread_specific<Receiver> receivers(
         [&] { return Receiver(s_.mesh, tracer_, materials_); });
-    return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
+    return ForEach(nodes, step, [&](uint32_t n, float* out) {
       return receivers.local().Gather(n, field, samples, s_.received.empty() ? 0.0f : s_.received[n],
-                                      Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out, timed);
+                                      Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out);
     });
   }
 
   bool GatherLinked(int step, const LinkField& field, int thinning) {
     tbb::enumerable_thread_specific<LinkReceiver> receivers(
         [&] { return LinkReceiver(s_.mesh, *links_, materials_); });
-    return ForEachNode(step, [&](uint32_t n, float* out, bool timed) {
-      return receivers.local().Gather(n, field, thinning, out, timed);
+    return ForEach(AllNodes(), step, [&](uint32_t n, float* out) {
+      return receivers.local().Gather(n, field, thinning, out);
     });
   }
 
-  // gather(node, out, timed) for every node that is not hidden, into gained_ and got_; false if told to
-  // stop, and then nothing else has changed.
+  // gather(node, out) for every one of `nodes` that is not hidden, into gained_ and got_; false if told
+  // to stop, and then nothing else has changed.
   template <typename Gather>
-  bool ForEachNode(int step, const Gather& gather) {
-    const size_t nodes = s_.mesh.node_count();
-    got_.assign(nodes, {});
+  bool ForEach(const std::vector<uint32_t>& nodes, int step, const Gather& gather) {
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes, 16), [&](const tbb::blocked_range<size_t>& range) {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
       if (stop.load(std::memory_order_relaxed)) return;
       if (MustStop()) {
         stop = true;
         return;
       }
-      for (size_t n = range.begin(); n < range.end(); ++n) {
-        auto out = gained_.all(uint32_t(n));
+      for (size_t i = range.begin(); i < range.end(); ++i) {
+        const uint32_t n = nodes[i];
+        auto out = gained_.all(n);
         std::fill(out.begin(), out.end(), 0.0f);
+        got_[n] = {};
         if (s_.hidden[n]) continue;
-        const bool timed = control_.time_split && n % 16 == 0;
-        got_[n] = gather(uint32_t(n), out.data(), timed);
+        got_[n] = gather(n, out.data());
       }
-      Report(step, double(done += range.size()) / double(nodes));
+      Report(step, double(done += range.size()) / double(nodes.size()));
     });
     return !stop;
   }
@@ -381,10 +439,6 @@ class ProgressiveSolver {
       // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
       unshot += s_.unshot.Flux(n).cast<double>().abs().sum() * area;
       if (TimeSplit* split = control_.time_split) {
-        // One receiver in 16 was timed and stands for the others.
-        split->rays += 16 * r.seconds_rays;
-        split->choosing += 16 * r.seconds_choosing;
-        split->accumulation += 16 * r.seconds_accumulating;
         split->lobe_reads += r.lobe_reads;
         split->lobe_writes += r.lobe_writes;
       }
@@ -455,6 +509,7 @@ class ProgressiveSolver {
   bool by_links_ = true;
   std::vector<Emitter> emitters_;
   std::vector<MaterialLobes> materials_;
+  std::vector<PlanarMirror> planar_mirrors_;
   std::unique_ptr<Links> links_;
   std::unique_ptr<CoarseTransport> coarse_;
   std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none

@@ -16,12 +16,12 @@ struct Progress {
   size_t nodes;
 };
 
-/// Where the time of the inner loop went, summed over threads, and how often lobes were touched. Times are
-/// measured on one receiver in 16 and scaled, so that the clock does not slow what it measures.
+/// Where the time of a solve went, wall seconds, and how often lobes were touched.
 struct TimeSplit {
-  double choosing = 0;       ///< seconds: choosing delta areas, reading the shooters' lobes included
-  double rays = 0;           ///< seconds: shadow rays
-  double accumulation = 0;   ///< seconds: from arriving light to the receiver's lobe; reading links
+  double preparation = 0;    ///< lit sides, tessellation, lobe tables, ray tracer
+  double emission = 0;       ///< shooting straight light, and refining the mesh for it
+  double links = 0;          ///< tracing links, counting form factors of clusters
+  double reflection = 0;     ///< sweeps, or shooting steps; light by way of mirrors
   uint64_t lobe_reads = 0;   ///< directional evaluations of a shooter's lobe; 0 in a diffuse scene
   uint64_t lobe_writes = 0;  ///< contributions accumulated into a glossy receiver; 0 in a diffuse scene
 };

@@ -47,7 +47,9 @@ const Arguments kManySteps = {"solve",
                               "--residual",
                               "0.01",
                               "--checkpoint-seconds",
-                              "0.001"};
+                              "0.001",
+                              "--refine-error",
+                              "0"};
 
 /// A quarter of a second by links.
 const Arguments kLinks = {"solve", ScenePath("cornell_glossy"), "--edge", "0.7", "--lmax", "4"};
@@ -169,8 +171,9 @@ TEST(ResumeCommandTest, OtherSettingsAndOtherScenesAreRefused) {
   refused({"--lobe-error", "3"}, 2, {"--lobe-error: 3"});
   refused({"--force-lmax", "3"}, 2, {"--force-lmax: 3", "none"});
   refused({"--transport", "shooting"}, 2, {"--transport: shooting", "links"});
-  refused({"--links", "100"}, 2, {"--links: 100", "256"});
+  refused({"--links", "100"}, 2, {"--links: 100", half});
   refused({"--plain-sweeps"}, 2, {"--plain-sweeps"});
+  refused({"--refine-error", "3"}, 2, {"--refine-error: 3", "10"});
   refused({"--seed", "2"}, 2, {"--seed: 2"});
   refused({ScenePath("cornell_diffuse")}, 1, {"cornell_diffuse", "not the scene", "materials"});
   refused({ScenePath("no-such-scene")}, 1, {"no-such-scene"});

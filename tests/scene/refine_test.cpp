@@ -71,7 +71,10 @@ Scene Fan() {
 /// A bent sheet of 2 x `n` quads and a flat one, both seen from both sides.
 Scene Sheets(int n = 5) {
   SceneBuilder b;
-  const uint32_t paper = Grey(&b, true);
+  MetallicRoughness sheet;
+  sheet.metallic = 0;
+  sheet.diffuse_transmission = 0.5f;
+  const uint32_t paper = b.AddMaterial("paper", sheet, Rgb::Zero(), true);
   std::vector<Vec3> positions, normals;
   std::vector<std::array<uint32_t, 3>> triangles;
   for (int i = 0; i <= n; ++i) {

@@ -1,0 +1,186 @@
+// How near a solve comes to the limit its rays set: CPU time of a whole solve over the time a bare loop around
+// Embree needs to trace the same rays, one thread. Prints a table of docs/validation.md#ray-limit.
+// Run from the project's root: ray_limit [RUNS]
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <embree3/rtcore.h>
+#include <tbb/global_control.h>
+
+#include "brdf/frame.h"
+#include "scene/gltf_scene.h"
+#include "solver/exposure.h"
+#include "solver/link_pattern.h"
+#include "solver/links.h"
+#include "solver/shooting.h"
+#include "solver/solver.h"
+
+namespace lobe {
+namespace {
+
+double CpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+// Embree with nothing around it: no filter, no choice among equal hits, rays ready in packets of 16.
+class BareEmbree {
+ public:
+  explicit BareEmbree(const Scene& scene) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, scene.positions.size()));
+    for (const Vec3& p : scene.positions) vertex = std::copy_n(p.data(), 3, vertex);
+    auto* corner = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, scene.faces.size()));
+    for (const Face& f : scene.faces) corner = std::copy_n(f.vertex.data(), 3, corner);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  ~BareEmbree() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+
+  static void Put(const Ray& ray, int lane, RTCRay16* p) {
+    p->org_x[lane] = ray.origin.x();
+    p->org_y[lane] = ray.origin.y();
+    p->org_z[lane] = ray.origin.z();
+    p->dir_x[lane] = ray.direction.x();
+    p->dir_y[lane] = ray.direction.y();
+    p->dir_z[lane] = ray.direction.z();
+    p->tnear[lane] = ray.t_min;
+    p->tfar[lane] = ray.t_max;
+    p->time[lane] = 0;
+    p->mask[lane] = 0xffffffffu;
+    p->id[lane] = p->flags[lane] = 0;
+  }
+
+  /// CPU seconds to trace the packets: nearest hits, or occlusion. Fills them anew each time.
+  double Nearest(const std::vector<Ray>& rays) { return Trace<RTCRayHit16>(rays); }
+  double Occlusion(const std::vector<Ray>& rays) { return Trace<RTCRay16>(rays); }
+
+ private:
+  template <typename Packet>
+  double Trace(const std::vector<Ray>& rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(64) int valid[16];
+    std::fill(valid, valid + 16, -1);
+    constexpr size_t kPackets = 1024;
+    std::vector<Packet> packets(kPackets);
+    double seconds = 0;
+    for (size_t begin = 0; begin + 16 <= rays.size(); begin += 16 * kPackets) {
+      const size_t count = std::min(kPackets, (rays.size() - begin) / 16);
+      for (size_t k = 0; k < count; ++k) {
+        for (int i = 0; i < 16; ++i) {
+          const Ray& ray = rays[begin + 16 * k + i];
+          if constexpr (std::is_same_v<Packet, RTCRay16>) {
+            Put(ray, i, &packets[k]);
+          } else {
+            Put(ray, i, &packets[k].ray);
+            packets[k].hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+          }
+        }
+      }
+      const double start = CpuSeconds();
+      for (size_t k = 0; k < count; ++k) {
+        if constexpr (std::is_same_v<Packet, RTCRay16>) {
+          rtcOccluded16(valid, scene_, &context, &packets[k]);
+        } else {
+          rtcIntersect16(valid, scene_, &context, &packets[k]);
+        }
+      }
+      seconds += CpuSeconds() - start;
+    }
+    return seconds;
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+struct Case {
+  const char* label;
+  std::string scene;
+  SolveOptions options;
+};
+
+void Print(const Case& test, int runs) {
+  const Scene scene = ReadGltfScene("tests/scenes/" + test.scene + ".glb");
+  // The rays: shadow rays to the emitters and links, for the nodes the solve ends with.
+  const Solution s = Solve(scene, test.options);
+  const RayTracer tracer(s.scene);
+  TableCache cache;
+  std::vector<MaterialLobes> materials;
+  for (const auto& m : s.scene.materials) materials.emplace_back(m.reflectance, s.options.lobes, cache);
+  const ShootingField emission(s.mesh, FindEmitters(s.scene));
+  Receiver receiver(s.mesh, tracer, materials);
+  std::vector<float> out(size_t(6) * kMaxBasisSize);
+  std::vector<Ray> shadow, links;
+  for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
+    receiver.Gather(n, emission, s.options.light_samples, 0.0f, 1, out.data());
+    shadow.insert(shadow.end(), receiver.last_rays().begin(), receiver.last_rays().end());
+    const MaterialLobes& m = materials[s.mesh.patches[s.mesh.node_patch[n]].material];
+    LinkDirections directions(Links::PatternOf(m, s.options.links));
+    directions.Start(n, s.options.seed);
+    const Frame frame(s.mesh.node_normal[n]);
+    const Vec3 from = s.mesh.node_sample_position[n] + s.mesh.node_sample_normal[n] * tracer.epsilon();
+    for (int r = 0; r < directions.pattern().rings; ++r) {
+      for (int j = 0; j < directions.pattern().sectors; ++j) {
+        links.push_back({from, 0, frame.ToWorld(directions.Local(r, j)), std::numeric_limits<float>::infinity()});
+      }
+    }
+  }
+  BareEmbree bare(s.scene);
+  std::vector<double> ratios, rates;
+  TimeSplit split;
+  for (int run = 0; run < runs; ++run) {
+    SolveControl control;
+    split = {};
+    control.time_split = &split;
+    const double t0 = CpuSeconds();
+    Solve(scene, test.options, control);
+    const double solve = CpuSeconds() - t0;
+    const double rays = bare.Nearest(links) + bare.Occlusion(shadow);
+    ratios.push_back(solve / rays);
+    rates.push_back(1e-6 * double(links.size() + shadow.size()) / rays);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  std::sort(rates.begin(), rates.end());
+  const double whole = split.preparation + split.emission + split.links + split.reflection;
+  std::printf("| %s | %zu | %.2f + %.2f | %.1f | %.2f | %.0f %% | %.0f %% | %.0f %% | %.0f %% |\n", test.label,
+              s.mesh.node_count(), 1e-6 * double(shadow.size()), 1e-6 * double(links.size()),
+              rates[rates.size() / 2], ratios[ratios.size() / 2], 100 * split.preparation / whole,
+              100 * split.emission / whole, 100 * split.links / whole, 100 * split.reflection / whole);
+}
+
+}  // namespace
+}  // namespace lobe
+
+int main(int argc, char** argv) {
+  using namespace lobe;
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 5;
+  SolveOptions forced;
+  forced.lobes.force_l_max = 12;
+  std::printf(
+      "| scene | nodes | million shadow rays + links | million rays/s, bare Embree | solve over bare Embree, "
+      "median | preparation | emission | links | sweeps |\n|---|---|---|---|---|---|---|---|---|\n");
+  Print({"cornell_diffuse", "cornell_diffuse", {}}, runs);
+  Print({"cornell_glossy, as authored", "cornell_glossy", {}}, runs);
+  Print({"cornell_glossy, every gloss at l_max 12", "cornell_glossy", forced}, runs);
+  return 0;
+}

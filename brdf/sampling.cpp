@@ -1,0 +1,232 @@
+#include "brdf/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lobe {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+
+float Pow5(float x) {
+  const float x2 = x * x;
+  return x2 * x2 * x;
+}
+
+Vec3 CosineDirection(float u1, float u2) {
+  const float r = std::sqrt(u1), phi = 2 * kPi * u2;
+  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u1)};
+}
+
+Vec3 Mirrored(const Vec3& w) { return {-w.x(), -w.y(), w.z()}; }
+
+// D without its pi, from the slope side of the half vector: 1 - cos^2 would cancel in float for sharp lobes.
+float GgxDTimesPi(const Vec3& h, float a2) {
+  const float s = h.x() * h.x() + h.y() * h.y() + a2 * h.z() * h.z();
+  return a2 / (s * s);
+}
+
+// c + sqrt(a^2 + (1 - a^2) c^2): 2 c over it is Smith's G1 of GGX.
+float SmithSum(float cosine, float a2) { return cosine + std::sqrt(a2 + (1 - a2) * cosine * cosine); }
+
+float GgxVisibility(float cos_i, float cos_o, float a2) {
+  return 0.5f / (cos_i * std::sqrt(a2 + (1 - a2) * cos_o * cos_o) +
+                 cos_o * std::sqrt(a2 + (1 - a2) * cos_i * cos_i));
+}
+
+// cos^n of the angle between unit a and b, accurate for large n because it starts from their difference.
+float CosinePower(const Vec3& a, const Vec3& b, float n) {
+  const float less = 0.5f * (a - b).squaredNorm();
+  return less < 1 ? std::exp(n * std::log1p(-less)) : 0.0f;
+}
+
+}  // namespace
+
+ReflectanceSampler::ReflectanceSampler(const Reflectance& r) {
+  // The colours under the coat are read off the closed form at normal incidence, where F = f0, so that
+  // brdf/reflectance.h stays their one home.
+  const Vec3d up(0, 0, 1);
+  base_ = EvaluateBase(r, up, up);
+  transmission_ = EvaluateTransmission(r, up, -up);
+  if (const auto* phong = std::get_if<Phong>(&r)) {
+    kind_ = Kind::kPhong;
+    width_ = phong->exponent;
+    gloss_ = phong->albedo;
+  } else if (const auto* ward = std::get_if<Ward>(&r)) {
+    kind_ = Kind::kWard;
+    width_ = ward->alpha;
+    gloss_ = ward->albedo;
+  } else if (const auto* m = std::get_if<MetallicRoughness>(&r)) {
+    f0_ = m->F0();
+    f90_less_f0_ = m->F90() - f0_;
+    under_coat_by_max_ = m->has_specular;
+    const Rgb through = UnderCoat(f0_);
+    for (int c = 0; c < 3; ++c) {
+      base_[c] = through[c] > 0 ? base_[c] / through[c] : 0;
+      transmission_[c] = through[c] > 0 ? transmission_[c] / through[c] : 0;
+    }
+    if ((f0_ > 0).any() || m->F90() > 0) kind_ = m->roughness < kMirrorRoughness ? Kind::kMirror : Kind::kGgx;
+    width_ = m->roughness * m->roughness;
+  }
+  width2_ = width_ * width_;
+  base_mean_ = base_.mean() * kPi;
+  transmission_mean_ = transmission_.mean() * kPi;
+  if (const float sum = base_mean_ + transmission_mean_; sum > 0) {
+    // Of half vectors the diffuse parts meet few at grazing, whatever wo: their albedo hardly falls there.
+    diffuse_mean_ = sum * (1 - f0_.mean());
+    diffuse_chance_ = base_mean_ / sum;
+    transmission_chance_ = transmission_mean_ / sum;
+  }
+  if (kind_ == Kind::kGgx) {
+    constexpr int kSide = 12;  // squared, directions an angle: a few percent, which is plenty for a chance
+    for (int i = 0; i <= kAngles; ++i) {
+      const float cos_o = std::max(float(i) / kAngles, 1e-3f);
+      const Vec3 wo(std::sqrt(1 - cos_o * cos_o), 0, cos_o);
+      float sum = 0;
+      for (int j = 0; j < kSide * kSide; ++j) {
+        const Vec3 h =
+            VisibleHalfVector(wo, (float(j % kSide) + 0.5f) / kSide, (float(j / kSide) + 0.5f) / kSide);
+        const float cos_h = wo.dot(h), cos_i = 2 * cos_h * h.z() - cos_o;
+        if (!(cos_i > 0)) continue;
+        // F G2 / G1.
+        sum += Fresnel(cos_h).mean() * 2 * cos_i * GgxVisibility(cos_i, cos_o, width2_) *
+               SmithSum(cos_o, width2_);
+      }
+      gloss_albedo_[i] = sum / (kSide * kSide);
+    }
+  }
+}
+
+Rgb ReflectanceSampler::Fresnel(float cosine) const {
+  return f0_ + f90_less_f0_ * Pow5(1 - std::min(std::abs(cosine), 1.0f));
+}
+
+Rgb ReflectanceSampler::UnderCoat(const Rgb& fresnel) const {
+  return under_coat_by_max_ ? Rgb::Constant(1 - fresnel.maxCoeff()) : Rgb(1 - fresnel);
+}
+
+float ReflectanceSampler::GlossAlbedo(float cos_o) const {
+  if (kind_ == Kind::kMirror) return Fresnel(cos_o).mean();
+  const float s = cos_o * kAngles;
+  const int i = std::min(int(s), kAngles - 1);
+  return gloss_albedo_[i] + (s - float(i)) * (gloss_albedo_[i + 1] - gloss_albedo_[i]);
+}
+
+ReflectanceSampler::Chances ReflectanceSampler::ChancesAt(float cos_o) const {
+  if (kind_ == Kind::kDiffuse) return {0, diffuse_chance_, transmission_chance_};
+  if (kind_ == Kind::kPhong || kind_ == Kind::kWard || diffuse_mean_ == 0) return {1, 0, 0};
+  const float gloss = GlossAlbedo(cos_o);
+  // A part that is there never goes without samples: its share is an estimate.
+  const float chance = std::clamp(gloss / (gloss + diffuse_mean_), 0.02f, 0.98f);
+  return {chance, (1 - chance) * diffuse_chance_, (1 - chance) * transmission_chance_};
+}
+
+Vec3 ReflectanceSampler::VisibleHalfVector(const Vec3& wo, float u1, float u2) const {
+  const Vec3 stretched = Vec3(wo.x() * width_, wo.y() * width_, wo.z()).normalized();
+  const float phi = 2 * kPi * u1;
+  const float z = (1 - u2) * (1 + stretched.z()) - stretched.z();
+  const float sine = std::sqrt(std::clamp((1 - z) * (1 + z), 0.0f, 1.0f));
+  const Vec3 h = Vec3(sine * std::cos(phi), sine * std::sin(phi), z) + stretched;
+  return Vec3(h.x() * width_, h.y() * width_, std::max(h.z(), 0.0f)).normalized();
+}
+
+ReflectanceValue ReflectanceSampler::Evaluate(const Vec3& wo, const Vec3& wi) const {
+  ReflectanceValue out;
+  if (!(wo.z() > 0) || wi.z() == 0) return out;
+  if (kind_ == Kind::kDiffuse) {
+    const bool above = wi.z() > 0;
+    out.f = above ? base_ : transmission_;
+    out.pdf = (above ? diffuse_chance_ : transmission_chance_) * std::abs(wi.z()) * kInvPi;
+    return out;
+  }
+  if (wi.z() < 0) {
+    if (transmission_mean_ == 0) return out;
+    const Vec3 mirrored(wi.x(), wi.y(), -wi.z());
+    const float cos_h = wo.dot((wo + mirrored).normalized());
+    out.f = transmission_ * UnderCoat(Fresnel(cos_h));
+    out.pdf = ChancesAt(wo.z()).transmission * -wi.z() * kInvPi;
+    return out;
+  }
+  if (kind_ == Kind::kPhong) {
+    const float power = CosinePower(Mirrored(wo), wi, width_) * 0.5f * kInvPi;
+    out.f = gloss_ * ((width_ + 2) * power);
+    out.pdf = (width_ + 1) * power;
+    return out;
+  }
+  const Vec3 sum = wo + wi;
+  if (kind_ == Kind::kWard) {
+    const float hz2 = sum.z() * sum.z(), h2 = sum.squaredNorm();
+    const float tan2 = (sum.x() * sum.x() + sum.y() * sum.y()) / hz2;
+    const float gauss = std::exp(-tan2 / width2_) * kInvPi / width2_;
+    out.f = gloss_ * (gauss * h2 / (hz2 * hz2));
+    // Of h: gauss / cos^3 theta_h; of wi: that over 4 wo.h, with |sum| = 2 wo.h.
+    out.pdf = gauss * h2 / (2 * hz2 * sum.z());
+    return out;
+  }
+  const Vec3 h = sum.normalized();
+  const Rgb fresnel = Fresnel(wo.dot(h));
+  const Chances chances = ChancesAt(wo.z());
+  if (base_mean_ > 0) {
+    out.f = base_ * UnderCoat(fresnel);
+    out.pdf = chances.base * wi.z() * kInvPi;
+  }
+  if (kind_ == Kind::kGgx) {
+    const float d = GgxDTimesPi(h, width2_) * kInvPi;
+    out.f += fresnel * (d * GgxVisibility(wi.z(), wo.z(), width2_));
+    out.pdf += chances.gloss * d / (2 * SmithSum(wo.z(), width2_));  // G1 D / (4 cos_o)
+  }
+  return out;
+}
+
+SampledDirection ReflectanceSampler::Sample(const Vec3& wo, float u1, float u2, float u3) const {
+  SampledDirection out;
+  if (!(wo.z() > 0)) return out;
+  const Chances chances = ChancesAt(wo.z());
+  if (u3 < chances.gloss) {
+    switch (kind_) {
+      case Kind::kDiffuse:
+        break;  // it has no gloss
+      case Kind::kMirror:
+        out.wi = Mirrored(wo);
+        out.pdf = chances.gloss;
+        out.weight = Fresnel(wo.z()) / chances.gloss;
+        out.delta = true;
+        return out;
+      case Kind::kPhong: {
+        const float log_cos = std::log1p(-u1) / (width_ + 1), phi = 2 * kPi * u2;
+        const float less = -std::expm1(log_cos), cosine = 1 - less, sine = std::sqrt(less * (1 + cosine));
+        const Vec3 z = Mirrored(wo);
+        const Vec3 x = std::abs(z.x()) < 0.7f ? Vec3(0, z.z(), -z.y()).normalized()
+                                              : Vec3(-z.z(), 0, z.x()).normalized();
+        out.wi = (x * (sine * std::cos(phi)) + z.cross(x) * (sine * std::sin(phi)) + z * cosine).normalized();
+        break;
+      }
+      case Kind::kWard: {
+        const float slope = width_ * std::sqrt(-std::log1p(-u1)), phi = 2 * kPi * u2;
+        const Vec3 h = Vec3(slope * std::cos(phi), slope * std::sin(phi), 1).normalized();
+        out.wi = (2 * wo.dot(h) * h - wo).normalized();
+        break;
+      }
+      case Kind::kGgx: {
+        const Vec3 h = VisibleHalfVector(wo, u1, u2);
+        out.wi = (2 * wo.dot(h) * h - wo).normalized();
+        break;
+      }
+    }
+    if (!(out.wi.z() > 0)) return out;
+  } else {
+    const bool through = u3 >= chances.gloss + chances.base;
+    if ((through ? chances.transmission : chances.base) == 0) return out;  // black, or u3 at a rounding error
+    out.wi = CosineDirection(u1, u2);
+    if (through) out.wi.z() = -out.wi.z();
+  }
+  const ReflectanceValue value = Evaluate(wo, out.wi);
+  if (!(value.pdf > 0)) return out;
+  out.pdf = value.pdf;
+  out.weight = value.f * (std::abs(out.wi.z()) / value.pdf);
+  return out;
+}
+
+}  // namespace lobe

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "brdf/sampling.h"
+#include "render/alias_table.h"
+#include "scene/ray_tracer.h"
+#include "scene/scene.h"
+#include "solver/hash.h"
+
+namespace lobe {
+
+/// Which of the two ways to meet a lamp is used. All three have the same mean; the single ones are second
+/// opinions for tests, and noisy: lights alone near lamps and on sharp gloss, directions alone with small
+/// lamps.
+enum class LightSampling {
+  kBoth,        ///< multiple importance sampling
+  kLights,      ///< shadow rays to points of lamps; lamps in mirrors are seen by the mirror's ray
+  kDirections,  ///< whatever rays drawn from the reflectance hit
+};
+
+struct PathTracerOptions {
+  LightSampling light_sampling = LightSampling::kBoth;
+  /// Scatterings of a path at most; 1: direct light alone. The default is a guard against hanging, not
+  /// a limit: paths live on with at most 98 % a bounce, so one in 1e87 gets there.
+  int max_bounces = 10000;
+};
+
+/// A point of one side of a face, at barycentrics (1 - u - v, u, v).
+struct SurfacePoint {
+  uint32_t face;
+  Side side = Side::kFront;
+  float u = 1.0f / 3, v = 1.0f / 3;
+};
+
+/// A mean of independent samples and the standard error of that mean, per channel.
+struct Estimate {
+  Eigen::Array3d mean = Eigen::Array3d::Zero(), standard_error = Eigen::Array3d::Zero();
+};
+
+/// Light of a scene by path tracing, without lobes: the yardstick solutions are checked with.
+///
+/// Unbiased (Kajiya, "The Rendering Equation", SIGGRAPH 1986): directions drawn from the reflectance, shadow
+/// rays to points drawn evenly from emitting triangles that were chosen by power, the two combined by the
+/// power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques", SIGGRAPH 1995); Russian
+/// roulette by throughput after 8 bounces; nothing is clamped. The models are those of brdf/reflectance.h to
+/// the letter, so they may reflect more than arrives where these do (docs/conventions.md#gltf-albedo).
+///
+/// Backs are black and opaque; doubleSided faces have two sides, and thin sheets pass light from one of them
+/// to the other. Reflectance lives in the frame of the interpolated normal. Light does not leak through a
+/// faceted surface for that: a direction counts only if it is on the same side of the face itself as of the
+/// interpolated horizon (a mirror's is pushed up to the face). An eye below that horizon gets the normal
+/// turned until it is 0.01 above.
+///
+/// Keeps what it needs of the scene. Const methods may run in many threads.
+class PathTracer {
+ public:
+  explicit PathTracer(const Scene& scene, const PathTracerOptions& options = {});
+
+  /// One sample of the radiance arriving at the ray's origin along it; its direction is unit. `rays`, if
+  /// given, is increased by the rays traced.
+  Rgb Radiance(const Ray& ray, RandomStream& random, uint64_t* rays = nullptr) const;
+  /// The same for a ray already traced; `wo` points back along it.
+  Rgb RadianceFrom(const RayHit& hit, const Vec3& wo, RandomStream& random, uint64_t* rays = nullptr) const;
+
+  /// Radiance leaving a point towards `wo` (world, unit), without the surface's own emission: what a lobe
+  /// holds. Same bits for any number of threads. Throws std::invalid_argument if wo is not above the
+  /// point's side, or if samples < 2.
+  Estimate ExitantRadiance(const SurfacePoint& at, const Vec3& wo, int samples, uint64_t seed = 1) const;
+  /// Irradiance of a point, about its shading normal, W m^-2; of black backs too.
+  Estimate Irradiance(const SurfacePoint& at, int samples, uint64_t seed = 1) const;
+
+  const RayTracer& tracer() const { return tracer_; }
+
+ private:
+  struct Surface {
+    ReflectanceSampler sampler;
+    Rgb emission;
+    bool emits, double_sided;
+  };
+  // What shading needs of a face: one cache line.
+  struct alignas(64) FaceShade {
+    Vec3 corner, edge1, edge2, normal;
+    uint32_t material;
+    float light_density = 0;         // per area, with which shadow rays end there; 0: not a lamp
+    uint32_t smooth = kNone;         // into corner_normals_; kNone: flat
+    bool emits[2] = {false, false};  // by side, if rays can meet that side
+  };
+
+  struct Vertex;
+
+  Vec3 ShadingNormal(const RayHit& hit, const FaceShade& face) const;
+  // One sample of the light straight from lamps, scattered towards the vertex's wo; weighed against
+  // directions.
+  Rgb LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const;
+  // One path. `first`: how the surface it starts from scatters, if not as its material says.
+  Rgb Walk(const RayHit& start, const Vec3& wo, bool count_emission, const ReflectanceSampler* first,
+           RandomStream& random, uint64_t* rays) const;
+  template <typename Sample>
+  Estimate Average(int samples, uint64_t seed, const Sample& sample) const;
+
+  PathTracerOptions options_;
+  RayTracer tracer_;
+  std::vector<Surface> surfaces_;  // by material
+  std::vector<FaceShade> faces_;
+  std::vector<std::array<Vec3, 3>> corner_normals_;  // of smooth faces
+  std::vector<uint32_t> lamps_;                      // faces
+  AliasTable choose_lamp_;
+};
+
+}  // namespace lobe
