@@ -4,10 +4,12 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/lobe_flags.h"
+#include "app/machine_memory.h"
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/resume_flags.h"
@@ -26,6 +28,7 @@ struct SolveFlags {
   SolveOptions options;
   LobeFlags lobes;
   double checkpoint_seconds = SolveControl{}.checkpoint_seconds;
+  std::optional<double> max_memory_gigabytes;
   double refine_error_percent = 100 * RefineOptions{}.error;
 };
 
@@ -36,6 +39,10 @@ void Validate(SolveFlags& flags) {
   if (!(flags.checkpoint_seconds >= 0)) {
     throw UsageError("--checkpoint-seconds: " + Short(flags.checkpoint_seconds) +
                      " is out of range: 0 (never) or more is expected");
+  }
+  if (flags.max_memory_gigabytes && !(*flags.max_memory_gigabytes > 0)) {
+    throw UsageError("--max-memory: " + Short(*flags.max_memory_gigabytes) +
+                     " is out of range: more than 0 GB is expected");
   }
   const bool resumes = !flags.resume.empty();
   if (flags.scene.empty() && !resumes) throw UsageError("SCENE is required, or --resume FILE");
@@ -101,13 +108,39 @@ class CheckpointWriter {
   bool warned_ = false;
 };
 
+std::string PhaseText(const Progress& p) {
+  switch (p.phase) {
+    case Phase::kPreparation:
+      return "preparing";
+    case Phase::kEmission:
+      return "light from the lamps";
+    case Phase::kLinks:
+      return "tracing links";
+    case Phase::kMirrors:
+      return "light from the lamps by mirrors";
+    case Phase::kBounces:
+      return "bounce " + std::to_string(p.step);
+  }
+  return "";
+}
+
 void ShowProgress(const Progress& p, double target, ProgressDisplay* display) {
-  const double done = p.residual < 1 ? std::log(p.residual) / std::log(target) : 0.0;
-  const std::string phase = p.step == 0 ? "light from the lamps" : "step " + std::to_string(p.step);
-  display->Show(done, phase + Format(" (%.0f %%)", 100 * p.fraction_of_step) +
-                          Format(", unshot %.3g %%", 100 * p.residual) + ", " + Count(p.nodes, "node") +
-                          Format(", %.3g million rays", double(p.rays) * 1e-6) +
-                          Format(", %.1f s", p.seconds));
+  // Before light bounces the bar shows the phase, then how far the residual has come.
+  const bool bounces = p.phase == Phase::kBounces;
+  const double done = bounces ? std::log(p.residual) / std::log(target) : p.fraction_of_phase;
+  std::string words = PhaseText(p);
+  if (bounces) {
+    words += Format(" (%.0f %%)", 100 * p.fraction_of_phase) +
+             Format(", %.3g %% of the power still moving", 100 * p.residual);
+  }
+  if (p.nodes > 0) words += ", " + Count(p.nodes, "node");
+  if (p.rays > 0) {
+    words += Format(", %.3g million rays", double(p.rays) * 1e-6) +
+             Format(" (%.2g million/s)", p.rays_per_second * 1e-6);
+  }
+  words += ", " + Duration(p.seconds);
+  if (p.seconds_left) words += ", about " + Duration(*p.seconds_left) + " left";
+  display->Show(done, words);
 }
 
 nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_seconds,
@@ -154,6 +187,7 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
   }
 
   TimeSplit split;
+  const size_t warnings_told = start.scene.warnings.size();
   const std::clock_t cpu_start = std::clock();
   const Solution solution = [&] {
     ProgressDisplay display(console);
@@ -162,6 +196,15 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
     control.stop = interrupted;
     control.time_split = &split;
     control.progress = [&](const Progress& p) { ShowProgress(p, start.options.residual, &display); };
+    control.max_memory = flags.max_memory_gigabytes ? 1e9 * *flags.max_memory_gigabytes : AvailableMemory();
+    control.memory = [&, told = 0.0](const MemoryNeed& need) mutable {
+      // Said again only if refinement has made it another.
+      if (std::abs(need.peak() - told) < 0.1 * told) return;
+      display.Clear();
+      console.Say((told > 0 ? "refined, it needs about " : "needs about ") + MemoryText(need.peak()) +
+                  " of memory");
+      told = need.peak();
+    };
     if (CheckpointWriter::Possible(flags.output)) {
       control.checkpoint = [&](const Solution& s) { checkpoints.Write(s); };
       control.checkpoint_seconds = flags.checkpoint_seconds;
@@ -172,6 +215,9 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
 
   WriteSolution(solution, flags.output);
 
+  for (size_t i = warnings_told; i < solution.scene.warnings.size(); ++i) {
+    console.Warn(solution.scene.warnings[i]);
+  }
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));
   const double emitted = Total(solution.ledger.emitted), mirrored = Total(solution.ledger.mirrored);
@@ -280,6 +326,12 @@ void AddSolveCommand(CLI::App& app, Command* command) {
                    "Save what there is so far about so often, under the output's name; 0: never")
       ->type_name("S")
       ->capture_default_str();
+  solve
+      ->add_option(
+          "--max-memory", flags->max_memory_gigabytes,
+          "Memory to take at most, GB; what needs more is refused, and refinement stops before it [what "
+          "the machine has available]")
+      ->type_name("GB");
   AddSeedFlag(solve, &o.seed);
   solve->callback([flags, solve, command] {
     *command = [flags, solve](Console& console) { return RunSolve(*flags, *solve, console); };

@@ -116,7 +116,7 @@ void Flip(Bisection* bisection) {
 
 /// Backs are bisected as fronts and then flipped, so that a face is cut alike on both sides.
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
-                      const TessellateOptions& options) {
+                      const TessellateOptions& options, const std::function<void()>& poll) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
   std::vector<std::array<uint32_t, 3>> triangles;
   triangles.reserve(group.size());
@@ -133,7 +133,7 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
     triangles.push_back(corner);
   }
   Bisection bisection =
-      BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack));
+      BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack), poll);
   if (group.front().side == Side::kBack) Flip(&bisection);
   return bisection;
 }
@@ -259,7 +259,8 @@ class Layout {
 
 }  // namespace
 
-Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides) {
+Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides,
+                const std::function<void()>& poll) {
   if (!(options.max_edge > 0) || !std::isfinite(options.max_edge)) {
     throw std::invalid_argument("Tessellate: max_edge must be positive");
   }
@@ -273,7 +274,10 @@ Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std:
   Mesh mesh;
   mesh.roots.assign(2 * scene.faces.size(), kNone);
   Layout layout(&mesh);
-  for (const Group& group : groups) layout.Append(scene, group, BisectGroup(scene, bounds, group, options));
+  for (const Group& group : groups) {
+    if (poll) poll();
+    layout.Append(scene, group, BisectGroup(scene, bounds, group, options, poll));
+  }
   PlaceSamplePoints(&mesh, options.border_inset);
   return mesh;
 }

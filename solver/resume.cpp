@@ -4,6 +4,7 @@
 
 #include "scene/gltf_output.h"
 #include "scene/input_error.h"
+#include "solver/memory.h"
 
 namespace lobe {
 namespace {
@@ -42,6 +43,15 @@ void CheckResumable(const Solution& state, const std::vector<PartDegrees>& degre
          " (base and gloss, -1 for none), expected " + Text(degrees[p]) +
          " from its material; was it solved by another version of Lobe?");
   }
+}
+
+void RequireMemoryToContinue(double bytes, const Solution& state,
+                             const std::vector<MaterialLobes>& materials) {
+  const MeshCounts counts = CountsOf(state.mesh, materials.size());
+  const double need = EstimateMemory(state.scene, counts, materials, state.options).peak();
+  if (!(bytes > 0) || need <= bytes) return;
+  throw InputError(state.scene.path + ": going on needs about " + MemoryText(need) +
+                   " of memory, expected at most " + MemoryText(bytes));
 }
 
 std::string DifferenceOfScenes(const Scene& scene, const Scene& solved) {

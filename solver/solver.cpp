@@ -25,15 +25,13 @@
 #include "solver/refinement.h"
 #include "solver/resume.h"
 #include "solver/shooting.h"
+#include "solver/time_left.h"
 
 namespace lobe {
 namespace {
 
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
-
-// Shooting needs links only to see which nodes are hidden and where light is lost.
-constexpr int kProbes = 64;
 
 // Emission alone is worth a checkpoint if it took this share of the pause between checkpoints (chosen).
 constexpr double kEmissionShare = 0.1;
@@ -62,7 +60,7 @@ class ProgressiveSolver {
     s_ = std::move(state);
     by_links_ = s_.options.transport != Transport::kShooting;
     seconds_before_ = s_.solve_seconds;
-    rays_ = s_.history.back().rays;
+    rays_ = rays_before_ = s_.history.back().rays;
   }
 
   Solution Continue() {
@@ -94,9 +92,9 @@ class ProgressiveSolver {
       phase += now - since;
       since = now;
     };
-    Prepare();
+    bool through = Prepare();
     lap(split.preparation);
-    bool through = Emission();
+    through = through && Emission();
     lap(split.emission);
     through = through && TraceLinks();
     lap(split.links);
@@ -129,15 +127,57 @@ class ProgressiveSolver {
   bool MustStop() const { return Interrupted() || OutOfTime(); }
   StopReason WhyStop() const { return Interrupted() ? StopReason::kInterrupted : StopReason::kTimeLimit; }
 
-  void Prepare() {
-    const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed);
-    s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit);
-    PrepareMaterials();
+  bool Prepare() {
+    emitters_ = FindEmitters(s_.scene);
+    for (const auto& e : emitters_) {
+      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
+    }
+    try {
+      const auto poll = [this] { StopIfTold(); };
+      const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed, poll);
+      PrepareMaterials();
+      const MeshCounts expected = ExpectCounts(s_.scene, lit, s_.options.mesh.max_edge);
+      RequireMemory(control_.max_memory, s_.scene, lit, expected, materials_, s_.options);
+      s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit, poll);
+      RequireMemory(control_.max_memory, s_.scene, lit, Counts(), materials_, s_.options);
+      TellMemory();
+      return true;
+    } catch (const Stopped&) {
+      // A solution without a node.
+      s_.mesh = {};
+      s_.mesh.roots.assign(2 * s_.scene.faces.size(), kNone);
+      s_.material_kinds.resize(s_.scene.materials.size(), GlossKind::kNone);
+      s_.material_errors.resize(s_.scene.materials.size(), 0.0);
+      gained_ = NodeLobes(s_.mesh, {});
+      return false;
+    }
+  }
+
+  // Ends what cannot be ended otherwise.
+  struct Stopped {};
+  void StopIfTold() {
+    Report(0, 0);
+    if (MustStop()) throw Stopped();
+  }
+
+  MeshCounts Counts() const { return CountsOf(s_.mesh, s_.scene.materials.size()); }
+  void TellMemory() {
+    if (control_.memory) control_.memory(EstimateMemory(s_.scene, Counts(), materials_, s_.options));
   }
 
   // All that is not in the state follows from the scene, the mesh and the settings.
   bool PrepareToContinue() {
-    PrepareMaterials();
+    emitters_ = FindEmitters(s_.scene);
+    for (const auto& e : emitters_) {
+      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
+    }
+    try {
+      PrepareMaterials();
+    } catch (const Stopped&) {
+      return false;
+    }
+    RequireMemoryToContinue(control_.max_memory, s_, materials_);
+    TellMemory();
     const std::vector<PartDegrees> degrees = Degrees();
     CheckResumable(s_, degrees);
     gained_ = NodeLobes(s_.mesh, degrees);
@@ -150,18 +190,17 @@ class ProgressiveSolver {
   }
 
   void PrepareMaterials() {
-    emitters_ = FindEmitters(s_.scene);
-    s_.material_kinds.clear();
-    s_.material_errors.clear();
+    std::vector<GlossKind> kinds;
+    std::vector<double> errors;
     TableCache cache;
     for (const auto& material : s_.scene.materials) {
+      StopIfTold();
       materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
-      s_.material_kinds.push_back(materials_.back().kind());
-      s_.material_errors.push_back(materials_.back().gloss.error);
+      kinds.push_back(materials_.back().kind());
+      errors.push_back(materials_.back().gloss.error);
     }
-    for (const auto& e : emitters_) {
-      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
-    }
+    s_.material_kinds = std::move(kinds);
+    s_.material_errors = std::move(errors);
   }
 
   std::vector<PartDegrees> Degrees() const {
@@ -183,6 +222,7 @@ class ProgressiveSolver {
   // Straight light of the emitters, on a mesh that is refined until it suits it.
   bool Emission() {
     const std::vector<PartDegrees> degrees = Degrees();
+    phase_ = Phase::kEmission;
     gained_ = NodeLobes(s_.mesh, degrees);
     const auto shoot = [&](const std::vector<uint32_t>& nodes) {
       if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
@@ -198,7 +238,7 @@ class ProgressiveSolver {
       const Roughness roughness(s_.mesh, gained_, area);
       const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
                                                      : roughness.AtMidpoints(refined, options.error);
-      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
+      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, MostNodes());
       if (refined.made.empty()) break;
       gained_ = CarryOver(gained_, refined);
       std::vector<Received> got(refined.mesh.node_count());
@@ -207,9 +247,29 @@ class ProgressiveSolver {
       s_.mesh = std::move(refined.mesh);
       if (!shoot(refined.made)) return false;
     }
+    if (options.rounds > 0 && options.error > 0) TellRefined();
     s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
     FindOpposite();
     return true;
+  }
+
+  // As many as the options allow, and as fit.
+  size_t MostNodes() {
+    const size_t asked = s_.options.refine.max_nodes;
+    if (!(control_.max_memory > 0)) return asked;
+    const double fit = NodesThatFit(control_.max_memory, s_.scene, Counts(), materials_, s_.options);
+    memory_limits_nodes_ = fit < double(asked);
+    return memory_limits_nodes_ ? size_t(fit) : asked;
+  }
+
+  void TellRefined() {
+    // The last round may have used what room there was up to a few nodes.
+    if (memory_limits_nodes_ && double(s_.mesh.node_count()) > 0.95 * double(MostNodes())) {
+      s_.scene.warnings.push_back(s_.scene.path + ": the mesh was refined up to " +
+                                  std::to_string(s_.mesh.node_count()) + " nodes only, all that fit into " +
+                                  MemoryText(control_.max_memory) + " of memory");
+    }
+    TellMemory();
   }
 
   std::vector<uint32_t> AllNodes() const {
@@ -221,17 +281,25 @@ class ProgressiveSolver {
   // Also finds the hidden nodes, and takes from them what emission gave them.
   bool TraceLinks() {
     Links::Options options;
-    options.links = by_links_ ? s_.options.links : kProbes;
+    options.links = by_links_ ? s_.options.links : Links::kProbes;
     options.follow_mirrors = by_links_;
     options.seed = s_.options.seed;
     if (by_links_) planar_mirrors_ = FindPlanarMirrors(s_.mesh, materials_, emitters_);
     options.planar_mirrors = planar_mirrors_;
-    links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
+    phase_ = Phase::kLinks;
+    double expected_rays = 0;
+    for (const auto& p : s_.mesh.patches) {
+      expected_rays += double(p.node_end - p.node_begin) *
+                       Links::PatternOf(materials_[p.material], options.links).count();
+    }
+    links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [&](double fraction) {
+      rays_under_way_ = uint64_t(fraction * expected_rays);
       Report(0, fraction);
       return MustStop();
     });
     if (links_->stopped()) return false;
     rays_ += links_->rays();
+    rays_under_way_ = 0;
     s_.hidden = links_->hidden();
     area_ = NodeAreas(s_.mesh, s_.hidden);
     if (by_links_ && s_.options.accelerate) {
@@ -246,6 +314,7 @@ class ProgressiveSolver {
     const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
       return m.kind() == GlossKind::kMirror;
     });
+    phase_ = Phase::kMirrors;
     if (by_links_ && mirrors) {
       if (!planar_mirrors_.empty()) {
         const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
@@ -285,6 +354,8 @@ class ProgressiveSolver {
   }
 
   StopReason Iterate() {
+    phase_ = Phase::kBounces;
+    rays_under_way_ = 0;
     for (;;) {
       if (const auto reason = WhyDone()) return *reason;
       if (MustStop()) return WhyStop();
@@ -390,6 +461,7 @@ class ProgressiveSolver {
         stop = true;
         return;
       }
+      uint64_t rays = 0;
       for (size_t i = range.begin(); i < range.end(); ++i) {
         const uint32_t n = nodes[i];
         auto out = gained_.all(n);
@@ -397,7 +469,9 @@ class ProgressiveSolver {
         got_[n] = {};
         if (s_.hidden[n]) continue;
         got_[n] = gather(n, out.data());
+        rays += got_[n].rays;
       }
+      rays_under_way_ += rays;
       Report(step, double(done += range.size()) / double(nodes.size()));
     });
     return !stop;
@@ -450,6 +524,7 @@ class ProgressiveSolver {
     record.rays = rays_;
     record.shooters = shooters;
     s_.history.push_back(record);
+    rays_under_way_ = 0;
     Report(step, 1.0);
   }
 
@@ -499,7 +574,12 @@ class ProgressiveSolver {
     if (!control_.progress) return;
     const std::unique_lock lock(report_mutex_, std::try_to_lock);
     if (!lock.owns_lock()) return;
-    control_.progress({step, fraction, s_.residual(), Seconds(), rays_, s_.mesh.node_count()});
+    const double run = SecondsOfRun();
+    const uint64_t rays = rays_ + rays_under_way_;
+    std::optional<double> left;
+    if (phase_ == Phase::kBounces) left = SecondsLeft(s_.history, s_.options, fraction, run);
+    control_.progress({phase_, step, fraction, s_.residual(), Seconds(), rays,
+                       run > 0 ? double(rays - rays_before_) / run : 0.0, s_.mesh.node_count(), left});
   }
 
   SolveControl control_;
@@ -517,7 +597,10 @@ class ProgressiveSolver {
   NodeLobes shooting_, gained_;
   std::vector<Received> got_;
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
-  uint64_t rays_ = 0;
+  Phase phase_ = Phase::kPreparation;
+  bool memory_limits_nodes_ = false;
+  uint64_t rays_ = 0, rays_before_ = 0;
+  std::atomic<uint64_t> rays_under_way_{0};  // traced, not yet committed
   double seconds_before_ = 0;  // in the runs that this one continues
   double last_checkpoint_ = 0, checkpoint_pause_ = 0;  // seconds of this run
   std::mutex report_mutex_;
