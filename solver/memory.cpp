@@ -109,10 +109,17 @@ MemoryNeed EstimateMemory(const Scene& scene, const MeshCounts& counts,
 
 double NodesThatFit(double bytes, const Scene& scene, const MeshCounts& counts,
                     const std::vector<MaterialLobes>& materials, const SolveOptions& options) {
-  const double none = EstimateMemory(scene, counts.Times(0), materials, options).peak();
-  const double all = EstimateMemory(scene, counts, materials, options).peak();
-  // All but the program and the scene is in proportion to the mesh.
-  return all > none ? counts.all_nodes() * std::max(0.0, bytes - none) / (all - none) : counts.all_nodes();
+  constexpr double kMany = 1e6;  // to see what one costs
+  const double now = EstimateMemory(scene, counts, materials, options).peak();
+  double dearest = 0;
+  for (size_t m = 0; m < counts.nodes.size(); ++m) {
+    if (counts.nodes[m] == 0) continue;
+    MeshCounts more = counts;
+    more.nodes[m] += kMany;
+    more.elements += 2 * kMany;
+    dearest = std::max(dearest, (EstimateMemory(scene, more, materials, options).peak() - now) / kMany);
+  }
+  return counts.all_nodes() + (dearest > 0 ? std::max(0.0, bytes - now) / dearest : 0.0);
 }
 
 void RequireMemory(double bytes, const Scene& scene, const std::vector<bool>& sides, const MeshCounts& counts,

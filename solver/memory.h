@@ -38,7 +38,8 @@ struct MemoryNeed {
 MemoryNeed EstimateMemory(const Scene& scene, const MeshCounts& counts,
                           const std::vector<MaterialLobes>& materials, const SolveOptions& options);
 
-/// How many nodes of a mesh in the proportions of `counts` fit into `bytes`.
+/// How many nodes a mesh of `counts` may have after refinement to fit into `bytes`, if all that are added are
+/// of its dearest material; at least those it has.
 double NodesThatFit(double bytes, const Scene& scene, const MeshCounts& counts,
                     const std::vector<MaterialLobes>& materials, const SolveOptions& options);
 

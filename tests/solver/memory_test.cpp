@@ -96,15 +96,17 @@ TEST(MemoryTest, WhatIsCountedIsInTheEstimate) {
   EXPECT_LT(need.links, 1.2 * links) << "no mirrors, no chains";
 }
 
-TEST(MemoryTest, SoManyNodesFitAsTheEstimateSays) {
+TEST(MemoryTest, NodesOfTheDearestMaterialFitAsTheEstimateSays) {
   const Scene scene = GlossyRoom();
   const SolveOptions o = Options(0.1f);
   const auto lobes = LobesOf(scene, o);
   const MeshCounts counts = CountsOf(Tessellate(scene, o.mesh), 3);
-  const double need = EstimateMemory(scene, counts.Times(7), lobes, o).peak();
-  EXPECT_NEAR(NodesThatFit(need, scene, counts, lobes, o), 7 * counts.all_nodes(),
-              0.01 * 7 * counts.all_nodes());
-  EXPECT_EQ(NodesThatFit(1000, scene, counts, lobes, o), 0);
+  MeshCounts more = counts;
+  more.nodes[1] += 100'000;  // the block's, with lobes
+  more.elements += 200'000;
+  const double need = EstimateMemory(scene, more, lobes, o).peak();
+  EXPECT_NEAR(NodesThatFit(need, scene, counts, lobes, o), more.all_nodes(), 0.02 * more.all_nodes());
+  EXPECT_EQ(NodesThatFit(1000, scene, counts, lobes, o), counts.all_nodes());
 }
 
 TEST(MemoryTest, ARefusalNamesAnEdgeThatFits) {
@@ -152,7 +154,7 @@ TEST(MemoryTest, AMeshIsRefinedOnlyAsFarAsItFits) {
   const Solution fitted = Solve(scene, o, control);
   EXPECT_LE(told, control.max_memory);
   EXPECT_LT(fitted.mesh.node_count(), free.mesh.node_count());
-  EXPECT_GT(fitted.mesh.node_count(), free.mesh.node_count() / 4);
+  EXPECT_GT(fitted.mesh.node_count(), free.mesh.node_count() / 8);
   ASSERT_EQ(fitted.scene.warnings.size(), 1u);
   EXPECT_NE(fitted.scene.warnings[0].find("all that fit"), std::string::npos) << fitted.scene.warnings[0];
 }
