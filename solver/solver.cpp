@@ -238,7 +238,9 @@ class ProgressiveSolver {
       const Roughness roughness(s_.mesh, gained_, area);
       const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
                                                      : roughness.AtMidpoints(refined, options.error);
-      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, MostNodes());
+      const size_t most_nodes = MostNodes();
+      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, most_nodes);
+      if (refined.out_of_nodes && most_nodes < options.max_nodes) short_of_memory_ = true;
       if (refined.made.empty()) break;
       gained_ = CarryOver(gained_, refined);
       std::vector<Received> got(refined.mesh.node_count());
@@ -254,17 +256,15 @@ class ProgressiveSolver {
   }
 
   // As many as the options allow, and as fit.
-  size_t MostNodes() {
+  size_t MostNodes() const {
     const size_t asked = s_.options.refine.max_nodes;
     if (!(control_.max_memory > 0)) return asked;
     const double fit = NodesThatFit(control_.max_memory, s_.scene, Counts(), materials_, s_.options);
-    memory_limits_nodes_ = fit < double(asked);
-    return memory_limits_nodes_ ? size_t(fit) : asked;
+    return fit < double(asked) ? size_t(fit) : asked;
   }
 
   void TellRefined() {
-    // The last round may have used what room there was up to a few nodes.
-    if (memory_limits_nodes_ && double(s_.mesh.node_count()) > 0.95 * double(MostNodes())) {
+    if (short_of_memory_) {
       s_.scene.warnings.push_back(s_.scene.path + ": the mesh was refined up to " +
                                   std::to_string(s_.mesh.node_count()) + " nodes only, all that fit into " +
                                   MemoryText(control_.max_memory) + " of memory");
@@ -598,7 +598,7 @@ class ProgressiveSolver {
   std::vector<Received> got_;
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
   Phase phase_ = Phase::kPreparation;
-  bool memory_limits_nodes_ = false;
+  bool short_of_memory_ = false;  // some of the mesh could not be refined
   uint64_t rays_ = 0, rays_before_ = 0;
   std::atomic<uint64_t> rays_under_way_{0};  // traced, not yet committed
   double seconds_before_ = 0;  // in the runs that this one continues
