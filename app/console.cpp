@@ -1,6 +1,7 @@
 #include "app/console.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace lobe {
@@ -68,6 +69,14 @@ std::string Bytes(double bytes) {
   int unit = 0;
   for (; bytes >= 1000 && unit < 4; ++unit) bytes /= 1000;
   return Format(unit == 0 ? "%.0f" : "%.3g", bytes) + " " + units[unit];
+}
+
+std::string Duration(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(std::min(std::max(seconds, 0.0), 1e15)));
+  const long long hours = whole / 3600, minutes = whole / 60 % 60;
+  if (hours > 0) return std::to_string(hours) + " h " + std::to_string(minutes) + " min";
+  if (minutes > 0) return std::to_string(minutes) + " min " + std::to_string(whole % 60) + " s";
+  return std::to_string(whole) + " s";
 }
 
 std::string Count(size_t n, const std::string& noun) {

@@ -51,6 +51,8 @@ std::string Format(const char* format, double value);
 std::string Short(double value);
 /// "1.2 MB".
 std::string Bytes(double bytes);
+/// "8 s", "2 min 5 s", "1 h 20 min".
+std::string Duration(double seconds);
 /// "1 node", "2 nodes".
 std::string Count(size_t n, const std::string& noun);
 

@@ -62,6 +62,8 @@ ExitCode ShowSolution(const InfoFlags& flags, Console& console) {
                          {"history", HistoryJson(s.history)},
                          {"stop_reason", Name(s.stop_reason)},
                          {"residual", s.residual()},
+                         {"resumed", s.resumed},
+                         {"checkpoint", s.stop_reason == StopReason::kUnfinished},
                          {"solve_seconds", s.solve_seconds}};
   console.Result(flags.file + ": solution\n" + SceneText(s.scene) + MeshText(s) + "\n" + MaterialText(rows) +
                      "\nsettings\n" + SettingsText(s.options) + "\nledger\n" + LedgerText(s.ledger) +

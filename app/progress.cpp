@@ -18,10 +18,13 @@ constexpr int kBarWidth = 24;
 ProgressDisplay::ProgressDisplay(const Console& console)
     : console_(console), terminal_(isatty(STDERR_FILENO)), last_(Clock::now()) {}
 
-ProgressDisplay::~ProgressDisplay() {
+ProgressDisplay::~ProgressDisplay() { Clear(); }
+
+void ProgressDisplay::Clear() {
   if (drawn_ == 0) return;
   std::fprintf(stderr, "\r%*s\r", static_cast<int>(drawn_), "");
   std::fflush(stderr);
+  drawn_ = 0;
 }
 
 void ProgressDisplay::Show(double fraction, const std::string& words) {

@@ -19,6 +19,8 @@ class ProgressDisplay {
 
   /// `fraction` 0..1. Cheap when called often: most calls print nothing.
   void Show(double fraction, const std::string& words);
+  /// Takes the bar off the terminal until the next Show, so that something else can be said.
+  void Clear();
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -160,7 +160,9 @@ json SettingsJson(const SolveOptions& o) {
 std::string StopText(const Solution& s) {
   const size_t steps = s.history.empty() ? 0 : s.history.size() - 1;
   return std::string(Name(s.stop_reason)) + ": " + Percent(s.residual()) +
-         " of the emitted power is unshot after " + Count(steps, "step") + " of reflected light";
+         " of the emitted power is unshot after " + Count(steps, "step") + " of reflected light" +
+         (s.resumed > 0 ? ", resumed " + Count(size_t(s.resumed), "time") : "") +
+         (s.stop_reason == StopReason::kUnfinished ? " (a checkpoint: --resume goes on from it)" : "");
 }
 
 json SceneJson(const Scene& scene) {

@@ -33,7 +33,7 @@ nlohmann::json LedgerJson(const Ledger& ledger);
 nlohmann::json HistoryJson(const std::vector<StepRecord>& history);
 nlohmann::json SettingsJson(const SolveOptions& options);
 
-/// "converged: 0.08 % of the emitted power is unshot after 9 steps".
+/// "converged: 0.08 % of the emitted power is unshot after 9 steps, resumed 1 time".
 std::string StopText(const Solution& solution);
 
 /// Faces, emitters and such.

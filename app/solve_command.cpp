@@ -1,26 +1,35 @@
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <new>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/lobe_flags.h"
+#include "app/machine_memory.h"
 #include "app/progress.h"
 #include "app/report.h"
+#include "app/resume_flags.h"
 #include "app/values.h"
+#include "scene/contacts.h"
 #include "scene/glb_writer.h"
 #include "scene/gltf_scene.h"
 #include "scene/input_error.h"
+#include "solver/resume.h"
 #include "solver/solver.h"
 
 namespace lobe {
 namespace {
 
 struct SolveFlags {
-  std::string scene, output;
+  std::string scene, output, resume;
   SolveOptions options;
   LobeFlags lobes;
+  double checkpoint_seconds = SolveControl{}.checkpoint_seconds;
+  std::optional<double> max_memory_gigabytes;
   double refine_error_percent = 100 * RefineOptions{}.error;
 };
 
@@ -28,8 +37,21 @@ void Validate(SolveFlags& flags) {
   flags.options.lobes = flags.lobes.Options();
   flags.options.refine.error = flags.refine_error_percent / 100;
   if (const std::string wrong = flags.options.Validate(); !wrong.empty()) throw UsageError(wrong);
+  if (!(flags.checkpoint_seconds >= 0)) {
+    throw UsageError("--checkpoint-seconds: " + Short(flags.checkpoint_seconds) +
+                     " is out of range: 0 (never) or more is expected");
+  }
+  if (flags.max_memory_gigabytes && !(*flags.max_memory_gigabytes > 0)) {
+    throw UsageError("--max-memory: " + Short(*flags.max_memory_gigabytes) +
+                     " is out of range: more than 0 GB is expected");
+  }
+  const bool resumes = !flags.resume.empty();
+  if (flags.scene.empty() && !resumes) throw UsageError("SCENE is required, or --resume FILE");
+  // What is resumed goes on where it is.
+  if (flags.output.empty() && resumes) flags.output = flags.resume;
+  if (flags.output.empty()) throw UsageError("-o, --output is required");
   RequireExtension("-o", flags.output, {".glb", ".gltf"});
-  RequireOtherFile("-o", flags.output, flags.scene, "the scene");
+  if (!flags.scene.empty()) RequireOtherFile("-o", flags.output, flags.scene, "the scene");
 }
 
 Scene ReadScene(const std::string& path) {
@@ -37,13 +59,91 @@ Scene ReadScene(const std::string& path) {
   return ReadGltfScene(path);
 }
 
+// The state to go on from, with this run's limits.
+Solution ReadToResume(const SolveFlags& flags, const CLI::App& command) {
+  Solution state = ReadSolution(flags.resume);
+  RefuseOtherSettings(command, flags.options, state.options, flags.resume);
+  state.options = WithGivenLimits(command, flags.options, state.options);
+  if (!flags.scene.empty()) {
+    const Scene scene =
+        CutAlongContacts(ReadScene(flags.scene), {.distance = state.options.contact_distance});
+    if (const std::string other = DifferenceOfScenes(scene, state.scene); !other.empty()) {
+      throw InputError(flags.scene + ": is not the scene that " + flags.resume +
+                       " was solved from: " + other);
+    }
+  }
+  return state;
+}
+
+// Writes checkpoints under the solution's name. One that cannot be written is told once, and the solve goes
+// on: the one before is still there.
+class CheckpointWriter {
+ public:
+  CheckpointWriter(const std::string& output, const Console& console, ProgressDisplay* display)
+      : output_(output), console_(console), display_(display) {}
+
+  /// Into a pipe or a device goes the result only.
+  static bool Possible(const std::string& output) {
+    std::error_code none;
+    return !std::filesystem::exists(output, none) || std::filesystem::is_regular_file(output, none);
+  }
+
+  void Write(const Solution& solution) {
+    std::string why;
+    try {
+      WriteSolution(solution, output_);
+      return;
+    } catch (const InputError& e) {
+      why = e.what();
+    } catch (const std::bad_alloc&) {
+      why = output_ + ": out of memory";
+    }
+    if (warned_) return;
+    warned_ = true;
+    display_->Clear();
+    console_.Warn("a checkpoint was not saved: " + why + "; solving goes on");
+  }
+
+ private:
+  const std::string& output_;
+  const Console& console_;
+  ProgressDisplay* display_;
+  bool warned_ = false;
+};
+
+std::string PhaseText(const Progress& p) {
+  switch (p.phase) {
+    case Phase::kPreparation:
+      return "preparing";
+    case Phase::kEmission:
+      return "light from the lamps";
+    case Phase::kLinks:
+      return "tracing links";
+    case Phase::kMirrors:
+      return "light from the lamps by mirrors";
+    case Phase::kBounces:
+      return "bounce " + std::to_string(p.step);
+  }
+  return "";
+}
+
 void ShowProgress(const Progress& p, double target, ProgressDisplay* display) {
-  const double done = p.residual < 1 ? std::log(p.residual) / std::log(target) : 0.0;
-  const std::string phase = p.step == 0 ? "light from the lamps" : "step " + std::to_string(p.step);
-  display->Show(done, phase + Format(" (%.0f %%)", 100 * p.fraction_of_step) +
-                          Format(", unshot %.3g %%", 100 * p.residual) + ", " + Count(p.nodes, "node") +
-                          Format(", %.3g million rays", double(p.rays) * 1e-6) +
-                          Format(", %.1f s", p.seconds));
+  // Before light bounces the bar shows the phase, then how far the residual has come.
+  const bool bounces = p.phase == Phase::kBounces;
+  const double done = bounces ? std::log(p.residual) / std::log(target) : p.fraction_of_phase;
+  std::string words = PhaseText(p);
+  if (bounces) {
+    words += Format(" (%.0f %%)", 100 * p.fraction_of_phase) +
+             Format(", %.3g %% of the power still moving", 100 * p.residual);
+  }
+  if (p.nodes > 0) words += ", " + Count(p.nodes, "node");
+  if (p.rays > 0) {
+    words += Format(", %.3g million rays", double(p.rays) * 1e-6) +
+             Format(" (%.2g million/s)", p.rays_per_second * 1e-6);
+  }
+  words += ", " + Duration(p.seconds);
+  if (p.seconds_left) words += ", about " + Duration(*p.seconds_left) + " left";
+  display->Show(done, words);
 }
 
 nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_seconds,
@@ -56,6 +156,7 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
   out["stop_reason"] = Name(s.stop_reason);
   out["residual"] = s.residual();
   out["solve_seconds"] = s.solve_seconds;
+  out["resumed"] = s.resumed;
   out["cpu_seconds"] = cpu_seconds;
   out["time_split"] = {{"preparation", split.preparation},
                        {"emission", split.emission},
@@ -70,26 +171,50 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
 
 double Total(const Ledger::Power& power) { return power[0] + power[1] + power[2]; }
 
-ExitCode RunSolve(SolveFlags flags, Console& console) {
+ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
   Validate(flags);
   // Asked before anything is computed, so that nothing is computed in vain.
   CheckWritable(flags.output);
   const std::atomic<bool>* interrupted = CatchInterrupts();
 
-  Scene scene = ReadScene(flags.scene);
-  const size_t faces_read = scene.faces.size();
-  for (const std::string& warning : scene.warnings) console.Warn(warning);
-  console.Say(flags.scene + "\n" + SceneText(scene));
+  Solution start;
+  if (flags.resume.empty()) {
+    start.scene = ReadScene(flags.scene);
+    start.options = flags.options;
+    for (const std::string& warning : start.scene.warnings) console.Warn(warning);
+    console.Say(flags.scene + "\n" + SceneText(start.scene));
+  } else {
+    start = ReadToResume(flags, command);
+    console.Say(flags.resume + "\n" + SceneText(start.scene));
+    console.Say("going on from " + StopText(start));
+  }
+  const size_t faces_read = start.scene.faces.size();
 
   TimeSplit split;
+  const size_t warnings_told = start.scene.warnings.size();
   const std::clock_t cpu_start = std::clock();
   const Solution solution = [&] {
     ProgressDisplay display(console);
+    CheckpointWriter checkpoints(flags.output, console, &display);
     SolveControl control;
     control.stop = interrupted;
     control.time_split = &split;
-    control.progress = [&](const Progress& p) { ShowProgress(p, flags.options.residual, &display); };
-    return Solve(std::move(scene), flags.options, control);
+    control.progress = [&](const Progress& p) { ShowProgress(p, start.options.residual, &display); };
+    control.max_memory = flags.max_memory_gigabytes ? 1e9 * *flags.max_memory_gigabytes : AvailableMemory();
+    control.memory = [&, told = 0.0](const MemoryNeed& need) mutable {
+      // Said again only if refinement has made it another.
+      if (std::abs(need.peak() - told) < 0.1 * told) return;
+      display.Clear();
+      console.Say((told > 0 ? "refined, it needs about " : "needs about ") + MemoryText(need.peak()) +
+                  " of memory");
+      told = need.peak();
+    };
+    if (CheckpointWriter::Possible(flags.output)) {
+      control.checkpoint = [&](const Solution& s) { checkpoints.Write(s); };
+      control.checkpoint_seconds = flags.checkpoint_seconds;
+    }
+    return flags.resume.empty() ? Solve(std::move(start.scene), start.options, control)
+                                : Resume(std::move(start), control);
   }();
   const double cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
 
@@ -100,13 +225,17 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
     console.Say("contacts: cut along where surfaces touch, which made " + Count(faces_cut, "triangle") +
                 " more");
   }
+  for (size_t i = warnings_told; i < solution.scene.warnings.size(); ++i) {
+    console.Warn(solution.scene.warnings[i]);
+  }
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));
   const double emitted = Total(solution.ledger.emitted), mirrored = Total(solution.ledger.mirrored);
   if (mirrored > 0.001 * emitted) {
-    console.Warn(Format("%.1f", 100 * mirrored / emitted) +
-                 " % of the emitted power fell on ideal mirrors, where shooting stops: light thrown by mirrors "
-                 "is missing from the lobes; --transport links follows it");
+    console.Warn(
+        Format("%.1f", 100 * mirrored / emitted) +
+        " % of the emitted power fell on ideal mirrors, where shooting stops: light thrown by mirrors "
+        "is missing from the lobes; --transport links follows it");
   }
   console.Say(MeshText(solution));
   console.Say(StopText(solution) + Format("; %.2f s", solution.solve_seconds) +
@@ -115,7 +244,8 @@ ExitCode RunSolve(SolveFlags flags, Console& console) {
   if (console.json()) console.Result("", SolveJson(solution, split, cpu_seconds, flags.output));
 
   if (solution.stop_reason == StopReason::kConverged) return kDone;
-  PrintError("stopped early, " + StopText(solution) + "; the solution was saved as " + flags.output);
+  PrintError("stopped early, " + StopText(solution) + "; the solution was saved as " + flags.output +
+             ", and --resume goes on from it");
   return kStoppedEarly;
 }
 
@@ -128,15 +258,24 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       "Reads a glTF 2.0 scene (.glb or .gltf), cuts its surfaces into elements, and lets light bounce until\n"
       "less than --residual of the emitted power is left. Lengths are in metres; a glTF emissive strength of "
       "1\n"
-      "is a radiance of 1 W/(m2 sr). An interrupt (Ctrl-C) or a limit saves what there is and exits with 3.\n"
+      "is a radiance of 1 W/(m2 sr). An interrupt (Ctrl-C) or a limit saves what there is and exits with 3;\n"
+      "--resume goes on from there to the same bits, and a solve that was killed from its last checkpoint.\n"
       "\n"
       "Examples:\n"
       "  lobe solve scene.glb -o solution.glb\n"
-      "  lobe solve scene.glb -o fine.glb --edge 0.1 --light-samples 256 --max-seconds 600");
-  solve->add_option("SCENE", flags->scene, "glTF scene, .glb or .gltf")->type_name("")->required();
-  solve->add_option("-o,--output", flags->output, "Solution to write, .glb or .gltf")
-      ->type_name("FILE")
-      ->required();
+      "  lobe solve scene.glb -o fine.glb --edge 0.1 --light-samples 256 --max-seconds 600\n"
+      "  lobe solve --resume fine.glb --max-seconds 0");
+  solve->add_option("SCENE", flags->scene, "glTF scene, .glb or .gltf; with --resume it may be left out")
+      ->type_name("");
+  solve
+      ->add_option("-o,--output", flags->output,
+                   "Solution to write, .glb or .gltf; with --resume, by default what is resumed")
+      ->type_name("FILE");
+  solve
+      ->add_option("--resume", flags->resume,
+                   "Go on from a solution that stopped early, with its settings; of these only --residual, "
+                   "--max-steps and --max-seconds can be changed")
+      ->type_name("FILE");
   SolveOptions& o = flags->options;
   solve->add_option("--edge", o.mesh.max_edge, "Longest edge of an element, metres")
       ->type_name("M")
@@ -151,8 +290,7 @@ void AddSolveCommand(CLI::App& app, Command* command) {
                    "Split elements where light bends by more, percent of the brightness there; 0: never")
       ->type_name("PCT")
       ->capture_default_str();
-  solve
-      ->add_option("--refine-rounds", o.refine.rounds, "Rounds of splitting; two of them halve an edge")
+  solve->add_option("--refine-rounds", o.refine.rounds, "Rounds of splitting; two of them halve an edge")
       ->type_name("N")
       ->capture_default_str();
   solve->add_option("--max-nodes", o.refine.max_nodes, "Split no further beyond so many nodes")
@@ -195,12 +333,24 @@ void AddSolveCommand(CLI::App& app, Command* command) {
   solve->add_option("--max-steps", o.max_steps, "Stop after so many steps of reflected light")
       ->type_name("N")
       ->capture_default_str();
-  solve->add_option("--max-seconds", o.max_seconds, "Stop after so many seconds; 0: no limit")
+  solve->add_option("--max-seconds", o.max_seconds, "Stop this run after so many seconds; 0: no limit")
       ->type_name("S")
       ->capture_default_str();
+  solve
+      ->add_option("--checkpoint-seconds", flags->checkpoint_seconds,
+                   "Save what there is so far about so often, under the output's name; 0: never")
+      ->type_name("S")
+      ->capture_default_str();
+  solve
+      ->add_option(
+          "--max-memory", flags->max_memory_gigabytes,
+          "Memory to take at most, GB; what needs more is refused, and refinement stops before it [what "
+          "the machine has available]")
+      ->type_name("GB");
   AddSeedFlag(solve, &o.seed);
-  solve->callback(
-      [flags, command] { *command = [flags](Console& console) { return RunSolve(*flags, console); }; });
+  solve->callback([flags, solve, command] {
+    *command = [flags, solve](Console& console) { return RunSolve(*flags, *solve, console); };
+  });
 }
 
 }  // namespace lobe

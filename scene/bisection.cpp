@@ -63,9 +63,10 @@ class Bisector {
     out_.cells.push_back({corner});
   }
 
-  Bisection Run() {
+  Bisection Run(const std::function<void()>& poll) {
     for (const EdgeHandle edge : mesh_.edges()) Enqueue(edge);
-    while (!queue_.empty()) {
+    for (uint32_t i = 1; !queue_.empty(); ++i) {
+      if (poll && i % 16384 == 0) poll();
       const EdgeHandle edge(queue_.top().edge);
       queue_.pop();
       Split(edge);
@@ -235,10 +236,11 @@ class Bisector {
 }  // namespace
 
 Bisection BisectLongEdges(const std::vector<std::array<uint32_t, 3>>& triangles, std::vector<Vec3> positions,
-                          std::vector<Vec3> normals, float max_edge) {
+                          std::vector<Vec3> normals, float max_edge,
+                          const std::function<void()>& poll) {
   Bisector bisector(std::move(positions), std::move(normals), max_edge);
   for (const auto& triangle : triangles) bisector.Add(triangle);
-  return bisector.Run();
+  return bisector.Run(poll);
 }
 
 RequestedBisection BisectRequested(const std::vector<std::array<uint32_t, 3>>& triangles,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "sh/vector.h"
@@ -32,9 +33,10 @@ struct Bisection {
 ///
 /// `triangles` index `positions` and have three different corners each. Where they do not form a
 /// two-manifold (three on an edge, two that touch in a point on the same side), the one that comes later
-/// gets vertices of its own. Throws std::length_error beyond 2^29 triangles.
+/// gets vertices of its own. Throws std::length_error beyond 2^29 triangles. `poll` is called from time to
+/// time and may throw to end it.
 Bisection BisectLongEdges(const std::vector<std::array<uint32_t, 3>>& triangles, std::vector<Vec3> positions,
-                          std::vector<Vec3> normals, float max_edge);
+                          std::vector<Vec3> normals, float max_edge, const std::function<void()>& poll = {});
 
 /// Triangles to be cut together or not at all; the second may be kNoTriangle.
 using BisectionRequest = std::array<uint32_t, 2>;

@@ -23,6 +23,9 @@ class GlbWriter {
   int AddUints(std::span<const uint32_t> values, Target target);
   int AddBytes(std::span<const uint8_t> values);
 
+  /// Takes memory for so many bytes of accessors at once; growing into it piece by piece would take twice as much.
+  void Reserve(size_t bytes) { buffer_.reserve(bytes); }
+
   /// Writes to a temporary name beside `path`, flushes to disk, renames: `path` is absent, what it was,
   /// or complete, whatever happens. A name ending in .gltf gets a .bin beside it (needed above 4 GiB).
   /// Throws InputError (unwritable, a directory, disk full, a .bin of that name which is not this file's).

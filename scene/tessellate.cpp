@@ -117,7 +117,8 @@ void Flip(Bisection* bisection) {
 /// Backs are bisected as fronts and then flipped, so that a face is cut alike on both sides.
 /// `wide`: see PartAtContacts; by vertex, shorter than those.
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
-                      const TessellateOptions& options, std::vector<bool>* wide) {
+                      const TessellateOptions& options, const std::function<void()>& poll,
+                      std::vector<bool>* wide) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint32_t> contact;
@@ -137,7 +138,7 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
   }
   *wide = PartAtContacts(contact, &welder, &triangles);
   Bisection bisection =
-      BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack));
+      BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack), poll);
   if (group.front().side == Side::kBack) Flip(&bisection);
   return bisection;
 }
@@ -266,7 +267,8 @@ class Layout {
 
 }  // namespace
 
-Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides) {
+Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides,
+                const std::function<void()>& poll) {
   if (!(options.max_edge > 0) || !std::isfinite(options.max_edge)) {
     throw std::invalid_argument("Tessellate: max_edge must be positive");
   }
@@ -281,8 +283,9 @@ Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std:
   mesh.roots.assign(2 * scene.faces.size(), kNone);
   Layout layout(&mesh);
   for (const Group& group : groups) {
+    if (poll) poll();
     std::vector<bool> wide;
-    const Bisection bisection = BisectGroup(scene, bounds, group, options, &wide);
+    const Bisection bisection = BisectGroup(scene, bounds, group, options, poll, &wide);
     layout.Append(scene, group, bisection, std::move(wide));
   }
   PlaceSamplePoints(&mesh, options.border_inset);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "scene/mesh.h"
@@ -23,7 +24,9 @@ struct TessellateOptions {
 /// `sides`: 2 * face + side -> wanted or not (see solver/exposure.h); empty means every front, and every
 /// back of double-sided materials. A face whose material transmits has nodes on both sides if either is
 /// wanted, and is cut alike on both (scene/opposite_nodes.h).
-/// Throws InputError if more than 2^31 elements would be needed.
-Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides = {});
+/// Throws InputError if more than 2^31 elements would be needed. `poll` is called from time to time and may
+/// throw to end it.
+Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std::vector<bool>& sides = {},
+                const std::function<void()>& poll = {});
 
 }  // namespace lobe

@@ -154,7 +154,8 @@ std::vector<Emitter> FindEmitters(const Scene& scene) {
   return out;
 }
 
-std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed) {
+std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed,
+                               const std::function<void()>& poll) {
   const auto emitters = FindEmitters(scene);
   if (emitters.empty()) {
     throw InputError(scene.path +
@@ -172,6 +173,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
     // Each walk lists the sides it met; merged afterwards, so that threads share nothing.
     std::vector<std::vector<LitPoint>> met(kWalksPerRound);
     tbb::parallel_for(0, kWalksPerRound, [&](int walk) {
+      if (poll && walk % 64 == 0) poll();
       RandomStream random(Mix(Mix(seed, 0x11f7), uint64_t(round) * kWalksPerRound + walk));
       const Emitter& e = emitters[choice.At((walk + random.Next()) / kWalksPerRound)];
       Vec3 at = PointOnTriangle(e.corners, random.Next(), random.Next());
@@ -217,6 +219,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
     const std::vector<std::pair<uint32_t, std::vector<uint32_t>>> aims(unmet.begin(), unmet.end());
     std::vector<std::optional<Sighting>> sightings(aims.size());
     tbb::parallel_for(size_t(0), aims.size(), [&](size_t i) {
+      if (poll && i % 16 == 0) poll();
       const auto& [side, faces] = aims[i];
       const RandomStream random(Mix(Mix(seed, 0xa13), side));
       sightings[i] = FindInSight(scene, tracer, faces, Side(side % 2), points, random);

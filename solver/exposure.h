@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "brdf/material_lobes.h"
@@ -15,8 +16,9 @@ namespace lobe {
 /// in rounds until a round reaches nothing new, per connected piece of a surface; then by rays aimed at what
 /// walks have not met. Walks go on through what transmits, and of that both sides are lit if either is.
 /// A side that no light meets gets no nodes and costs nothing (inside a closed box, say).
-/// Throws InputError if nothing emits.
-std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed);
+/// Throws InputError if nothing emits. `poll` is called from time to time, by any thread, and may throw to end it.
+std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed,
+                               const std::function<void()>& poll = {});
 
 /// Emitted light that reaches no node, as fractions of each channel's emitted power; for the ledger. With
 /// `mirrors` (per material: an ideal mirror that light goes on from) what is lost behind mirrors counts too.

@@ -175,16 +175,6 @@ LinkPattern Links::PatternOf(const MaterialLobes& material, int links) {
   return LinkPattern::For(links, material.diffuse() ? 0 : material.max_degree(), kPerCoefficient);
 }
 
-size_t Links::EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
-                            const Options& options) {
-  size_t links = 0;
-  for (const auto& p : mesh.patches) {
-    const auto& m = materials[p.material];
-    links += size_t(p.node_end - p.node_begin) * PatternOf(m, options.links).count();
-  }
-  return links * sizeof(uint32_t);
-}
-
 Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
              const std::vector<MaterialLobes>& materials, const Options& options,
              const std::function<bool(double)>& stop)

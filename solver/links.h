@@ -55,6 +55,9 @@ class Links {
   /// (docs/validation.md#links).
   static constexpr int kPerCoefficient = 8;
 
+  /// Shooting needs links only to see which nodes are hidden and where light is lost: so many.
+  static constexpr int kProbes = 64;
+
   struct Options {
     int links = 512;  ///< per diffuse node; glossy ones take kPerCoefficient for each coefficient if that is more
     bool follow_mirrors = true;
@@ -83,9 +86,6 @@ class Links {
   size_t count() const { return targets_.size(); }
   size_t bytes() const { return targets_.size() * sizeof(uint32_t) + hops_.size() * sizeof(Hop); }
   static LinkPattern PatternOf(const MaterialLobes& material, int links);
-  /// Bytes that links of `mesh` would take, chains aside.
-  static size_t EstimateBytes(const Mesh& mesh, const std::vector<MaterialLobes>& materials,
-                              const Options& options);
 
  private:
   struct Patch {

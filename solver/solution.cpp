@@ -14,6 +14,8 @@ const char* Name(StopReason reason) {
       return "interrupted";
     case StopReason::kNotConverging:
       return "not converging";
+    case StopReason::kUnfinished:
+      return "unfinished";
   }
   return "";
 }

@@ -13,7 +13,14 @@
 
 namespace lobe {
 
-enum class StopReason { kConverged, kStepLimit, kTimeLimit, kInterrupted, kNotConverging };
+enum class StopReason {
+  kConverged,
+  kStepLimit,
+  kTimeLimit,
+  kInterrupted,
+  kNotConverging,
+  kUnfinished,  ///< not stopped: a checkpoint of a solve that went on, or was killed
+};
 const char* Name(StopReason reason);
 
 /// A solved scene: what `lobe solve` writes and everything else reads.
@@ -27,10 +34,13 @@ struct Solution {
   NodeLobes total;                        ///< reflected radiance, all bounces shot so far included
   NodeLobes direct;                       ///< of it, straight from emitters; indirect = total - direct
   NodeLobes unshot;                       ///< of it, not yet passed on
+  /// Per node: irradiance so far, summed over channels, which shooting needs to go on. Empty with links.
+  std::vector<float> received;
   Ledger ledger;
   std::vector<StepRecord> history;
+  int resumed = 0;  ///< how many times it was continued after a stop
   StopReason stop_reason = StopReason::kConverged;
-  double solve_seconds = 0;
+  double solve_seconds = 0;  ///< of all runs together
 
   double residual() const { return history.empty() ? 1.0 : history.back().residual; }
 };

@@ -99,6 +99,9 @@ class SolutionWriter {
   explicit SolutionWriter(const Solution& solution) : s_(solution), colours_(BakeColours(solution)) {}
 
   void Write(const std::string& path) {
+    // An upper bound: nodes' position, normal, colour and irradiance; elements with their bisections; faces.
+    glb_.Reserve(44 * s_.mesh.node_count() + 3 * s_.total.bytes() + 16 * s_.mesh.element_count() +
+                 64 * s_.mesh.patches.size() + 28 * s_.scene.faces.size() + 24 * s_.scene.positions.size());
     WriteMaterials();
     json scene_nodes = json::array();
     WriteMeshes(&scene_nodes);
@@ -168,6 +171,10 @@ class SolutionWriter {
     const std::span<const uint8_t> hidden = std::span(s_.hidden).subspan(patch.node_begin, count);
     if (std::find_if(hidden.begin(), hidden.end(), [](uint8_t h) { return h != 0; }) != hidden.end()) {
       own["hidden"] = glb_.AddBytes(hidden);
+    }
+    if (!s_.received.empty()) {
+      own["received"] =
+          glb_.AddFloats(std::span(s_.received).subspan(patch.node_begin, count), "SCALAR", Target::kNone);
     }
     const PartDegrees& degrees = s_.total.patch_degrees(p);
     if (degrees.base >= 0) own["lMaxBase"] = degrees.base;

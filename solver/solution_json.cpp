@@ -16,7 +16,8 @@ using nlohmann::json;
 constexpr size_t kIntMax = std::numeric_limits<int>::max();
 
 constexpr StopReason kStopReasons[] = {StopReason::kConverged, StopReason::kStepLimit, StopReason::kTimeLimit,
-                                       StopReason::kInterrupted, StopReason::kNotConverging};
+                                       StopReason::kInterrupted, StopReason::kNotConverging,
+                                       StopReason::kUnfinished};
 constexpr GlossKind kGlossKinds[] = {GlossKind::kNone, GlossKind::kLobe, GlossKind::kSharp,
                                      GlossKind::kMirror};
 
@@ -142,6 +143,7 @@ json SolutionRecord(const Solution& solution) {
                                  {"shooters", step.shooters}});
   }
   record["stopReason"] = Name(solution.stop_reason);
+  if (solution.resumed > 0) record["resumed"] = solution.resumed;
   record["solveSeconds"] = solution.solve_seconds;
   return record;
 }
@@ -172,6 +174,7 @@ void ReadSolutionRecord(const GltfJson& record, Solution* solution) {
     solution->history.push_back(step);
   }
   solution->stop_reason = ReadName(record, "stopReason", kStopReasons);
+  if (record.Has("resumed")) solution->resumed = RequiredInt(record, "resumed");
   solution->solve_seconds = RequiredNumber(record, "solveSeconds");
 }
 

@@ -172,6 +172,7 @@ class SolutionReader {
       ReadGeometry(p);
       ReadTrees(p);
       ReadHidden(p);
+      ReadReceived(p);
     }
     PlaceSamplePoints(&s_.mesh, s_.options.mesh.border_inset);
   }
@@ -284,6 +285,19 @@ class SolutionReader {
     const std::vector<uint32_t> hidden = Uints(own, "hidden");
     ExpectCount(own, "hidden", hidden.size(), patch.node_end - patch.node_begin);
     for (size_t i = 0; i < hidden.size(); ++i) s_.hidden[patch.node_begin + i] = hidden[i] != 0;
+  }
+
+  // All patches have it, or none.
+  void ReadReceived(uint32_t p) {
+    const GltfJson& own = patches_[p].own;
+    const Mesh::Patch& patch = s_.mesh.patches[p];
+    if (p > 0 && own.Has("received") == s_.received.empty()) {
+      own.FailValue("received", "an accessor in every patch, or in none");
+    }
+    if (!own.Has("received")) return;
+    const std::vector<float> received = Floats(own, "received", 1);
+    ExpectCount(own, "received", received.size(), patch.node_end - patch.node_begin);
+    s_.received.insert(s_.received.end(), received.begin(), received.end());
   }
 
   void ReadLobes() {

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include <tbb/blocked_range.h>
@@ -23,7 +24,9 @@
 #include "solver/losses.h"
 #include "solver/planar_mirrors.h"
 #include "solver/refinement.h"
+#include "solver/resume.h"
 #include "solver/shooting.h"
+#include "solver/time_left.h"
 
 namespace lobe {
 namespace {
@@ -31,8 +34,12 @@ namespace {
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
 
-// Shooting needs links only to see which nodes are hidden and where light is lost.
-constexpr int kProbes = 64;
+// Emission alone is worth a checkpoint if it took this share of the pause between checkpoints (chosen).
+constexpr double kEmissionShare = 0.1;
+
+// From one checkpoint to the next passes at least this many times what writing took: at most a tenth of the
+// time goes into them.
+constexpr double kCheckpointWork = 10;
 
 Ledger::Power& operator+=(Ledger::Power& a, const Eigen::Array3d& b) {
   for (int c = 0; c < 3; ++c) a[c] += b[c];
@@ -48,6 +55,36 @@ class ProgressiveSolver {
     by_links_ = options.transport != Transport::kShooting;
   }
 
+  /// Continues `state`, which has whole steps behind it.
+  ProgressiveSolver(Solution state, const SolveControl& control)
+      : control_(control), start_(std::chrono::steady_clock::now()), tracer_(state.scene) {
+    s_ = std::move(state);
+    by_links_ = s_.options.transport != Transport::kShooting;
+    seconds_before_ = s_.solve_seconds;
+    rays_ = rays_before_ = s_.history.back().rays;
+  }
+
+  Solution Continue() {
+    if (const auto reason = WhyDone()) {
+      s_.stop_reason = *reason;
+      return std::move(s_);
+    }
+    TimeSplit unwanted, &split = control_.time_split ? *control_.time_split : unwanted;
+    const bool ready = PrepareToContinue();
+    split.links += SecondsOfRun();
+    if (!ready) {
+      // The state is as good as it was, its ledger too.
+      s_.stop_reason = WhyStop();
+      return std::move(s_);
+    }
+    ++s_.resumed;
+    const double since = SecondsOfRun();
+    s_.stop_reason = Iterate();
+    split.reflection += SecondsOfRun() - since;
+    Close();
+    return std::move(s_);
+  }
+
   Solution Run() {
     TimeSplit unwanted, &split = control_.time_split ? *control_.time_split : unwanted;
     double since = 0;
@@ -56,9 +93,9 @@ class ProgressiveSolver {
       phase += now - since;
       since = now;
     };
-    Prepare();
+    bool through = Prepare();
     lap(split.preparation);
-    bool through = Emission();
+    through = through && Emission();
     lap(split.emission);
     through = through && TraceLinks();
     lap(split.links);
@@ -72,6 +109,7 @@ class ProgressiveSolver {
       gained_.SetZero();
       s_.total = s_.direct = s_.unshot = gained_;
       s_.hidden.assign(s_.mesh.node_count(), 0);
+      s_.received = {};
       s_.ledger = {};
       s_.stop_reason = WhyStop();
     }
@@ -80,39 +118,115 @@ class ProgressiveSolver {
   }
 
  private:
-  double Seconds() const {
+  // Of this run; what is recorded counts those before it too.
+  double SecondsOfRun() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+  double Seconds() const { return seconds_before_ + SecondsOfRun(); }
   bool Interrupted() const { return control_.stop && control_.stop->load(std::memory_order_relaxed); }
-  bool OutOfTime() const { return s_.options.max_seconds > 0 && Seconds() > s_.options.max_seconds; }
+  bool OutOfTime() const { return s_.options.max_seconds > 0 && SecondsOfRun() > s_.options.max_seconds; }
   bool MustStop() const { return Interrupted() || OutOfTime(); }
   StopReason WhyStop() const { return Interrupted() ? StopReason::kInterrupted : StopReason::kTimeLimit; }
 
-  void Prepare() {
-    const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed);
-    s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit);
+  bool Prepare() {
     emitters_ = FindEmitters(s_.scene);
-    TableCache cache;
-    for (const auto& material : s_.scene.materials) {
-      materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
-      s_.material_kinds.push_back(materials_.back().kind());
-      s_.material_errors.push_back(materials_.back().gloss.error);
-    }
     for (const auto& e : emitters_) {
       emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
     }
+    try {
+      const auto poll = [this] { StopIfTold(); };
+      const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed, poll);
+      PrepareMaterials();
+      const MeshCounts expected = ExpectCounts(s_.scene, lit, s_.options.mesh.max_edge);
+      RequireMemory(control_.max_memory, s_.scene, lit, expected, materials_, s_.options);
+      s_.mesh = Tessellate(s_.scene, s_.options.mesh, lit, poll);
+      RequireMemory(control_.max_memory, s_.scene, lit, Counts(), materials_, s_.options);
+      TellMemory();
+      return true;
+    } catch (const Stopped&) {
+      // A solution without a node.
+      s_.mesh = {};
+      s_.mesh.roots.assign(2 * s_.scene.faces.size(), kNone);
+      s_.material_kinds.resize(s_.scene.materials.size(), GlossKind::kNone);
+      s_.material_errors.resize(s_.scene.materials.size(), 0.0);
+      gained_ = NodeLobes(s_.mesh, {});
+      return false;
+    }
   }
 
-  // Straight light of the emitters, on a mesh that is refined until it suits it.
-  bool Emission() {
+  // Ends what cannot be ended otherwise.
+  struct Stopped {};
+  void StopIfTold() {
+    Report(0, 0);
+    if (MustStop()) throw Stopped();
+  }
+
+  MeshCounts Counts() const { return CountsOf(s_.mesh, s_.scene.materials.size()); }
+  void TellMemory() {
+    if (control_.memory) control_.memory(EstimateMemory(s_.scene, Counts(), materials_, s_.options));
+  }
+
+  // All that is not in the state follows from the scene, the mesh and the settings.
+  bool PrepareToContinue() {
+    emitters_ = FindEmitters(s_.scene);
+    for (const auto& e : emitters_) {
+      emitted_ += (e.radiance * (std::numbers::pi_v<float> * e.area)).cast<double>();
+    }
+    try {
+      PrepareMaterials();
+    } catch (const Stopped&) {
+      return false;
+    }
+    RequireMemoryToContinue(control_.max_memory, s_, materials_);
+    TellMemory();
+    const std::vector<PartDegrees> degrees = Degrees();
+    CheckResumable(s_, degrees);
+    gained_ = NodeLobes(s_.mesh, degrees);
+    got_.resize(s_.mesh.node_count());
+    FindOpposite();
+    const uint64_t rays = rays_;
+    if (!TraceLinks()) return false;
+    rays_ = rays;  // counted before
+    return true;
+  }
+
+  void PrepareMaterials() {
+    std::vector<GlossKind> kinds;
+    std::vector<double> errors;
+    TableCache cache;
+    for (const auto& material : s_.scene.materials) {
+      StopIfTold();
+      materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
+      kinds.push_back(materials_.back().kind());
+      errors.push_back(materials_.back().gloss.error);
+    }
+    s_.material_kinds = std::move(kinds);
+    s_.material_errors = std::move(errors);
+  }
+
+  std::vector<PartDegrees> Degrees() const {
     std::vector<PartDegrees> degrees;
     for (const auto& patch : s_.mesh.patches) {
       const auto& lobes = materials_[patch.material];
       degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
     }
+    return degrees;
+  }
+
+  void FindOpposite() {
+    const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
+    if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
+      opposite_ = OppositeNodes(s_.mesh, s_.scene);
+    }
+  }
+
+  // Straight light of the emitters, on a mesh that is refined until it suits it.
+  bool Emission() {
+    const std::vector<PartDegrees> degrees = Degrees();
+    phase_ = Phase::kEmission;
     gained_ = NodeLobes(s_.mesh, degrees);
     const auto shoot = [&](const std::vector<uint32_t>& nodes) {
-      received_.assign(s_.mesh.node_count(), 0.0f);
+      if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
       s_.hidden.assign(s_.mesh.node_count(), 0);
       got_.resize(s_.mesh.node_count());
       return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
@@ -125,7 +239,9 @@ class ProgressiveSolver {
       const Roughness roughness(s_.mesh, gained_, area);
       const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
                                                      : roughness.AtMidpoints(refined, options.error);
-      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
+      const size_t most_nodes = MostNodes();
+      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, most_nodes);
+      if (refined.out_of_nodes && most_nodes < options.max_nodes) short_of_memory_ = true;
       if (refined.made.empty()) break;
       gained_ = CarryOver(gained_, refined);
       std::vector<Received> got(refined.mesh.node_count());
@@ -134,12 +250,27 @@ class ProgressiveSolver {
       s_.mesh = std::move(refined.mesh);
       if (!shoot(refined.made)) return false;
     }
+    if (options.rounds > 0 && options.error > 0) TellRefined();
     s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
-    const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
-    if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
-      opposite_ = OppositeNodes(s_.mesh, s_.scene);
-    }
+    FindOpposite();
     return true;
+  }
+
+  // As many as the options allow, and as fit.
+  size_t MostNodes() const {
+    const size_t asked = s_.options.refine.max_nodes;
+    if (!(control_.max_memory > 0)) return asked;
+    const double fit = NodesThatFit(control_.max_memory, s_.scene, Counts(), materials_, s_.options);
+    return fit < double(asked) ? size_t(fit) : asked;
+  }
+
+  void TellRefined() {
+    if (short_of_memory_) {
+      s_.scene.warnings.push_back(s_.scene.path + ": the mesh was refined up to " +
+                                  std::to_string(s_.mesh.node_count()) + " nodes only, all that fit into " +
+                                  MemoryText(control_.max_memory) + " of memory");
+    }
+    TellMemory();
   }
 
   std::vector<uint32_t> AllNodes() const {
@@ -151,17 +282,25 @@ class ProgressiveSolver {
   // Also finds the hidden nodes, and takes from them what emission gave them.
   bool TraceLinks() {
     Links::Options options;
-    options.links = by_links_ ? s_.options.links : kProbes;
+    options.links = by_links_ ? s_.options.links : Links::kProbes;
     options.follow_mirrors = by_links_;
     options.seed = s_.options.seed;
     if (by_links_) planar_mirrors_ = FindPlanarMirrors(s_.mesh, materials_, emitters_);
     options.planar_mirrors = planar_mirrors_;
-    links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
+    phase_ = Phase::kLinks;
+    double expected_rays = 0;
+    for (const auto& p : s_.mesh.patches) {
+      expected_rays += double(p.node_end - p.node_begin) *
+                       Links::PatternOf(materials_[p.material], options.links).count();
+    }
+    links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [&](double fraction) {
+      rays_under_way_ = uint64_t(fraction * expected_rays);
       Report(0, fraction);
       return MustStop();
     });
     if (links_->stopped()) return false;
     rays_ += links_->rays();
+    rays_under_way_ = 0;
     s_.hidden = links_->hidden();
     area_ = NodeAreas(s_.mesh, s_.hidden);
     if (by_links_ && s_.options.accelerate) {
@@ -176,6 +315,7 @@ class ProgressiveSolver {
     const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
       return m.kind() == GlossKind::kMirror;
     });
+    phase_ = Phase::kMirrors;
     if (by_links_ && mirrors) {
       if (!planar_mirrors_.empty()) {
         const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
@@ -202,18 +342,44 @@ class ProgressiveSolver {
     return true;
   }
 
+  // Is there nothing to do after the last whole step?
+  std::optional<StopReason> WhyDone() const {
+    if (s_.residual() <= s_.options.residual) return StopReason::kConverged;
+    const size_t n = s_.history.size();
+    if (n > size_t(s_.options.max_steps)) return StopReason::kStepLimit;
+    if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
+    if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
+      return StopReason::kNotConverging;
+    }
+    return std::nullopt;
+  }
+
   StopReason Iterate() {
-    for (int step = 1;; ++step) {
-      if (s_.residual() <= s_.options.residual) return StopReason::kConverged;
-      if (step > s_.options.max_steps) return StopReason::kStepLimit;
+    phase_ = Phase::kBounces;
+    rays_under_way_ = 0;
+    for (;;) {
+      if (const auto reason = WhyDone()) return *reason;
       if (MustStop()) return WhyStop();
-      const size_t n = s_.history.size();
-      if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
-      if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
-        return StopReason::kNotConverging;
-      }
+      Checkpoint();
+      const int step = int(s_.history.size());
       if (!(by_links_ ? Sweep(step) : ShootingStep(step))) return WhyStop();
     }
+  }
+
+  // Shows the state to whoever keeps it, when it is time.
+  void Checkpoint() {
+    if (!control_.checkpoint || !(control_.checkpoint_seconds > 0)) return;
+    const double now = SecondsOfRun();
+    // When emission has taken long, so will the steps: what there is can be looked at from here on.
+    const bool emission_only = s_.history.size() == 1 && s_.resumed == 0;
+    const double pause = emission_only ? kEmissionShare * control_.checkpoint_seconds
+                                       : std::max(control_.checkpoint_seconds, checkpoint_pause_);
+    if (now - last_checkpoint_ < pause) return;
+    s_.stop_reason = StopReason::kUnfinished;
+    Close();
+    control_.checkpoint(s_);
+    last_checkpoint_ = SecondsOfRun();
+    checkpoint_pause_ = kCheckpointWork * (last_checkpoint_ - now);
   }
 
   // Sends all unshot light through the links, and with it what the coarse solution says will follow.
@@ -271,7 +437,7 @@ class ProgressiveSolver {
     tbb::enumerable_thread_specific<Receiver> receivers(
         [&] { return Receiver(s_.mesh, tracer_, materials_); });
     return ForEach(nodes, step, [&](uint32_t n, float* out) {
-      return receivers.local().Gather(n, field, samples, received_[n],
+      return receivers.local().Gather(n, field, samples, s_.received.empty() ? 0.0f : s_.received[n],
                                       Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out);
     });
   }
@@ -296,6 +462,7 @@ class ProgressiveSolver {
         stop = true;
         return;
       }
+      uint64_t rays = 0;
       for (size_t i = range.begin(); i < range.end(); ++i) {
         const uint32_t n = nodes[i];
         auto out = gained_.all(n);
@@ -303,7 +470,9 @@ class ProgressiveSolver {
         got_[n] = {};
         if (s_.hidden[n]) continue;
         got_[n] = gather(n, out.data());
+        rays += got_[n].rays;
       }
+      rays_under_way_ += rays;
       Report(step, double(done += range.size()) / double(nodes.size()));
     });
     return !stop;
@@ -340,7 +509,7 @@ class ProgressiveSolver {
       rays_ += r.rays;
       if (s_.hidden[n]) continue;
       const double area = area_[n];
-      received_[n] += r.delivered.sum();
+      if (!s_.received.empty()) s_.received[n] += r.delivered.sum();
       const Eigen::Array3d flux(flux_[n].gained.cast<double>());
       ledger.delivered += r.delivered.cast<double>() * area;
       ledger.absorbed += r.absorbed.cast<double>() * area;
@@ -361,6 +530,7 @@ class ProgressiveSolver {
     record.rays = rays_;
     record.shooters = shooters;
     s_.history.push_back(record);
+    rays_under_way_ = 0;
     Report(step, 1.0);
   }
 
@@ -410,7 +580,12 @@ class ProgressiveSolver {
     if (!control_.progress) return;
     const std::unique_lock lock(report_mutex_, std::try_to_lock);
     if (!lock.owns_lock()) return;
-    control_.progress({step, fraction, s_.residual(), Seconds(), rays_, s_.mesh.node_count()});
+    const double run = SecondsOfRun();
+    const uint64_t rays = rays_ + rays_under_way_;
+    std::optional<double> left;
+    if (phase_ == Phase::kBounces) left = SecondsLeft(s_.history, s_.options, fraction, run);
+    control_.progress({phase_, step, fraction, s_.residual(), Seconds(), rays,
+                       run > 0 ? double(rays - rays_before_) / run : 0.0, s_.mesh.node_count(), left});
   }
 
   SolveControl control_;
@@ -425,7 +600,6 @@ class ProgressiveSolver {
   std::unique_ptr<CoarseTransport> coarse_;
   std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none
   std::vector<double> area_;
-  std::vector<float> received_;  // per node: irradiance so far, summed over channels
   NodeLobes shooting_, gained_;
   std::vector<Received> got_;
   struct NodeFlux {
@@ -433,7 +607,12 @@ class ProgressiveSolver {
   };
   std::vector<NodeFlux> flux_;  // of the last step
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
-  uint64_t rays_ = 0;
+  Phase phase_ = Phase::kPreparation;
+  bool short_of_memory_ = false;  // some of the mesh could not be refined
+  uint64_t rays_ = 0, rays_before_ = 0;
+  std::atomic<uint64_t> rays_under_way_{0};  // traced, not yet committed
+  double seconds_before_ = 0;  // in the runs that this one continues
+  double last_checkpoint_ = 0, checkpoint_pause_ = 0;  // seconds of this run
   std::mutex report_mutex_;
 };
 
@@ -443,6 +622,13 @@ Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& con
   if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
   scene = CutAlongContacts(std::move(scene), {.distance = options.contact_distance});
   return ProgressiveSolver(std::move(scene), options, control).Run();
+}
+
+Solution Resume(Solution state, const SolveControl& control) {
+  if (const std::string wrong = state.options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
+  // Nothing was worth keeping but the scene, which is cut along its contacts already.
+  if (state.history.empty()) return ProgressiveSolver(std::move(state.scene), state.options, control).Run();
+  return ProgressiveSolver(std::move(state), control).Continue();
 }
 
 }  // namespace lobe

@@ -55,6 +55,13 @@ TEST_F(BadInputTest, EdgesTooShortForTheMachineAreRefused) {
   }
 }
 
+TEST_F(BadInputTest, WhatNeedsMoreMemoryThanAllowedIsRefusedWithAnEdgeThatFits) {
+  ExpectOneSentence(RunQuietly({"solve", ScenePath("cornell_diffuse"), "-o", Output(), "--edge", "0.02",
+                                "--max-memory", "0.1"}),
+                    1, {"cornell_diffuse.glb", "0.02 m", "GB", "at most 100 MB", "m would fit"});
+  ExpectNothingLeft();
+}
+
 TEST_F(BadInputTest, WrongMagicIsRefused) {
   std::string bytes = ReadWholeFile(ScenePath("cornell_diffuse"));
   bytes.replace(0, 4, "gTLF");

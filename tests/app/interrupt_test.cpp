@@ -1,5 +1,6 @@
 // Stopping early: the result is saved, readable, and says why; exit code 3.
 
+#include <chrono>
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -69,6 +70,39 @@ TEST(InterruptTest, TimeLimitSavesAReadableSolution) {
   EXPECT_EQ(r.exit_code, 3);
   EXPECT_THAT(r.err, HasSubstr("time limit"));
   EXPECT_EQ(InfoOf(folder.File("out.glb"))["stop_reason"], "time limit");
+}
+
+TEST(InterruptTest, AStopBeforeAnyLightIsSolvedSavesSomethingThatRendersAndGoesOn) {
+  const ScratchFolder folder;
+  const std::string out = folder.File("out.glb"), whole = folder.File("whole.glb");
+  const auto start = std::chrono::steady_clock::now();
+  // A mesh of two million elements takes seconds; within them it is not there yet.
+  const ProgramResult r = RunQuietly(
+      {"solve", ScenePath("cornell_diffuse"), "-o", out, "--edge", "0.03", "--max-seconds", "0.1"});
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(r.exit_code, 3) << r.err;
+  EXPECT_LT(took.count(), 2.0) << "stops within about a second";
+  const json info = InfoOf(out);
+  EXPECT_EQ(info["stop_reason"], "time limit");
+  EXPECT_EQ(info["history"].size(), 0u);
+  EXPECT_LT(info["ledger"]["closure"], 1e-9) << "all that is emitted is unshot";
+  EXPECT_EQ(
+      RunQuietly({"render", out, "-o", folder.File("a.png"), "--size", "16x16", "--spp", "1"}).exit_code, 0);
+  // Going on is starting over.
+  EXPECT_EQ(RunQuietly({"solve", "--resume", out, "--max-seconds", "0.1"}).exit_code, 3);
+}
+
+/// "... light ..., 123 nodes, 1.2 million rays (3 million/s), 8 s, about 2 min 5 s left"
+TEST(InterruptTest, ProgressTellsPhasePowerNodesRaysAndTimeLeft) {
+  const ScratchFolder folder;
+  const ProgramResult r =
+      RunLobe({"solve", ScenePath("cornell_diffuse"), "-o", folder.File("out.glb"), "--edge", "0.5",
+               "--refine-error", "0", "--transport", "shooting", "--step-fraction", "0.1", "--delta-areas",
+               "512", "--residual", "1e-4", "--max-seconds", "9"});
+  EXPECT_THAT(r.err, HasSubstr("needs about "));
+  EXPECT_THAT(r.err, ::testing::ContainsRegex(
+                         "bounce [0-9]+ \\([0-9]+ %\\), [0-9.e-]+ % of the power still moving, [0-9]+ nodes, "
+                         "[0-9.e+]+ million rays \\([0-9.e+]+ million/s\\), [0-9]+ s, about [0-9].* left"));
 }
 
 TEST(InterruptTest, StepLimitSavesWhatTheStepsDid) {

@@ -7,6 +7,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -26,6 +29,10 @@ struct ProgramOptions {
   rlim_t file_size_limit = 0;
   /// Called whenever more has arrived on standard error, with all of it so far.
   std::function<void(pid_t, const std::string& err)> on_stderr;
+  /// Called every few milliseconds while it runs.
+  std::function<void(pid_t)> on_tick;
+  /// SIGKILL, which nothing can catch, so long after the start; 0: never.
+  std::chrono::microseconds kill_after{0};
 };
 
 /// Runs the real program to its end.
@@ -52,11 +59,25 @@ inline ProgramResult RunLobe(const std::vector<std::string>& arguments, const Pr
   close(out_pipe[1]);
   close(err_pipe[1]);
 
+  const auto start = std::chrono::steady_clock::now();
+  bool killed = false;
   ProgramResult result;
   pollfd polls[2] = {{out_pipe[0], POLLIN, 0}, {err_pipe[0], POLLIN, 0}};
   std::string* texts[2] = {&result.out, &result.err};
   for (int open_pipes = 2; open_pipes > 0;) {
-    if (poll(polls, 2, -1) < 0) continue;
+    const auto age =
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
+    const bool kill_to_come = options.kill_after.count() > 0 && !killed;
+    if (kill_to_come && age >= options.kill_after) {
+      kill(child, SIGKILL);
+      killed = true;
+      continue;
+    }
+    if (options.on_tick) options.on_tick(child);
+    const int64_t until_kill = kill_to_come ? (options.kill_after - age).count() : 10'000'000;
+    const int64_t pause = std::min<int64_t>(options.on_tick ? 3000 : 10'000'000, until_kill);
+    const timespec wait{pause / 1'000'000, pause % 1'000'000 * 1000};
+    if (ppoll(polls, 2, &wait, nullptr) < 0) continue;
     for (int i = 0; i < 2; ++i) {
       if (polls[i].fd < 0 || polls[i].revents == 0) continue;
       char buffer[4096];

@@ -113,6 +113,13 @@ TEST(UsageTest, MissingAndUnknownFlags) {
   ExpectUsageError({"compare", "a.exr"}, {"REF"});
 }
 
+TEST(UsageTest, WhatSurvivingTakesIsInRange) {
+  ExpectUsageError(With(kSolve, {"--max-memory", "0"}), {"--max-memory", "more than 0 GB"});
+  ExpectUsageError(With(kSolve, {"--checkpoint-seconds", "-1"}),
+                   {"--checkpoint-seconds", "0 (never) or more"});
+  ExpectUsageError({"solve", "--resume", "half.exr"}, {"-o", ".glb"});
+}
+
 TEST(UsageTest, TheSceneIsNotOverwritten) {
   const ScratchFolder folder;
   const std::string scene = ReadWholeFile(ScenePath("cornell_diffuse"));

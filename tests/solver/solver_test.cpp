@@ -249,7 +249,7 @@ TEST(SolverTest, StopsWhenToldAndKeepsWholeSteps) {
   SolveControl control;
   control.stop = &stop;
   control.progress = [&](const Progress& p) {
-    if (p.step == 2 && p.fraction_of_step > 0.3 && p.fraction_of_step < 1) stop = true;
+    if (p.step == 2 && p.fraction_of_phase > 0.3 && p.fraction_of_phase < 1) stop = true;
   };
   SolveOptions o = Coarse();
   o.mesh.max_edge = 0.25f;
