@@ -117,7 +117,7 @@ TEST(TransportTest, LinksAndShootingReachTheSameSolution) {
   const auto area = NodeAreas(links.mesh, links.hidden);
   const double power = Power(links.total, area) / Power(shooting.total, area) - 1;
   const double spread = FluxDifference(links, shooting);
-  printf("LS power %g spread %g\n", power, spread);
+  // Measured: -0.4 %, and 1.1 % node by node.
   EXPECT_LT(std::abs(power), 0.01);
   EXPECT_LT(spread, 0.02);
 }
@@ -135,18 +135,16 @@ TEST(TransportTest, OvershootingReachesTheFixedPointOfPlainSweeps) {
     ASSERT_EQ(fast.stop_reason, StopReason::kConverged);
     ASSERT_EQ(plain.stop_reason, StopReason::kConverged);
     const double difference = FluxDifference(plain, fast);
-    printf("DIFF accel %g, sweeps %zu plain %zu\n", difference, fast.history.size(), plain.history.size());
     EXPECT_LT(difference, 1e-4);
     EXPECT_LT(fast.history.size(), plain.history.size());
     o.accelerate = true;
     o.thin_late_links = true;
     const Solution thin = Solve(scene, o);
-    printf("DIFF thin %g power %g sweeps %zu %d\n", FluxDifference(plain, thin),
-           Power(thin.total, NodeAreas(thin.mesh, thin.hidden)) /
-                   Power(plain.total, NodeAreas(thin.mesh, thin.hidden)) -
-               1,
-           thin.history.size(), int(thin.stop_reason));
-    EXPECT_LT(FluxDifference(plain, thin), 0.01) << "what thin links cost";
+    // What thin links cost: 0.8e-3 and 1.4e-3 node by node, 4e-4 of the power at most.
+    EXPECT_LT(FluxDifference(plain, thin), 4e-3);
+    EXPECT_GT(FluxDifference(plain, thin), 1e-4) << "or they need no switch of their own";
+    const auto area = NodeAreas(plain.mesh, plain.hidden);
+    EXPECT_NEAR(Power(thin.total, area) / Power(plain.total, area), 1, 2e-3);
   }
 }
 
@@ -181,29 +179,29 @@ Room SolveFurnace(const Reflectance& wall, bool accelerate, double residual, flo
 // Of 1 / (1 - 0.98) = 50 the first sweeps bring one each.
 TEST(TransportTest, AWhiteClosedRoomConvergesInAFewSweeps) {
   const Room fast = SolveFurnace(Lambert{Rgb::Constant(0.98f)}, true, 1e-3, 0.8f);
-  printf("WHITE fast %zu sweeps mean %g worst %g\n", fast.sweeps, fast.mean, fast.worst);
   EXPECT_EQ(fast.solution.stop_reason, StopReason::kConverged);
-  EXPECT_LE(fast.sweeps, 12u);
-  EXPECT_NEAR(fast.mean, 50, 0.5);
+  EXPECT_LE(fast.sweeps, 8u) << "6 measured";
+  EXPECT_NEAR(fast.mean, 50, 0.5);  // 50.02 measured
   EXPECT_LT(fast.solution.ledger.Closure(), 1e-5);
   const Room plain = SolveFurnace(Lambert{Rgb::Constant(0.98f)}, false, 1e-3, 0.8f);
-  printf("WHITE plain %zu sweeps mean %g\n", plain.sweeps, plain.mean);
   // 0.98^n = 1e-3 / 50 leaves less than a per mille; residual is unshot over emitted: 0.98^n = 1e-3, n = 342.
   EXPECT_NEAR(double(plain.sweeps), 342, 5);
   EXPECT_NEAR(plain.mean, 50 * (1 - 1e-3), 0.5);
 }
 
-// Lobes ring below zero here; what matters is that the solver ends, and says how.
+// Lobes of degree 20 ring below zero here. Measured: 20 sweeps with overshooting, 157 without.
 TEST(TransportTest, AClosedRoomOfBrightMetalConvergesWithSignedLobes) {
-  for (const bool accelerate : {true, false}) {
-    const Room room = SolveFurnace(Metal(0.3f, 0.98f), accelerate, 1e-3, 2.5f);
-    printf("METAL accelerate %d: %zu sweeps, %s, residual %g, mean %g, closure %g, degree %d, %.1f s\n",
-           accelerate, room.sweeps, Name(room.solution.stop_reason), room.solution.residual(), room.mean,
-           room.solution.ledger.Closure(), room.solution.total.patch_degrees(0).gloss,
-           room.solution.solve_seconds);
-    EXPECT_TRUE(std::isfinite(room.mean));
-    EXPECT_LT(room.solution.ledger.Closure(), 1e-5);
+  const Reflectance metal = Metal(0.3f, 0.98f);
+  const Room fast = SolveFurnace(metal, true, 1e-3, 2.5f), plain = SolveFurnace(metal, false, 1e-3, 2.5f);
+  for (const Room* room : {&fast, &plain}) {
+    EXPECT_EQ(room->solution.stop_reason, StopReason::kConverged);
+    EXPECT_LT(room->solution.ledger.Closure(), 1e-5);
   }
+  EXPECT_LE(fast.sweeps, 30u);
+  EXPECT_LE(plain.sweeps, 180u);
+  // Of what both still lack, a per mille of the emission, each bounce brings one of about 23.
+  EXPECT_NEAR(fast.mean / plain.mean, 1, 0.015);
+  EXPECT_GT(plain.mean, 20) << "albedo 0.957 in the mean";
 }
 
 TEST(TransportTest, GivesTheSameBitsForAnyNumberOfThreadsWithMirrorsAndSheets) {
@@ -233,8 +231,6 @@ TEST(TransportTest, LedgerClosesWithMirrorsSheetsAndAnOpenSky) {
       o.transport = transport;
       o.accelerate = accelerate;
       const Ledger ledger = Solve(EverythingRoom(), o).ledger;
-      printf("LEDGER %s %d closure %g imbalance %g\n", Name(transport), accelerate, ledger.Closure(),
-             ledger.RelativeImbalance());
       EXPECT_LT(ledger.Closure(), 1e-5) << Name(transport);
       EXPECT_LT(ledger.RelativeImbalance(), 0.06) << Name(transport);
       EXPECT_GT(ledger.escaped[0], 0.1 * ledger.emitted[0]);
@@ -272,12 +268,11 @@ TEST(TransportTest, ASheetBetweenLampAndReceiverPassesItsShare) {
         if (patch.material == sheet + 1) lamp += power;
       }
       // Parallel squares at half their side: F = 0.41525 (Howell C-11). Each square is taken as one patch,
-      // which leaves out how light varies over it: 1 % at the second bounce.
+      // which leaves out how light varies over it: 0.4 % of the sheet, 4 % of what comes back to the lamp.
       const double f = 0.41525, e = kPi;
       const double up = rho * f * e / (1 - lamp_rho * f * f * rho);
-      printf("SHEET %g %g %s front %g/%g back %g ratio %g  lamp %g/%g absorbed %g\n", double(rho),
-             double(tau), Name(transport), front, up, back, back / std::max(front, 1e-9), lamp,
-             lamp_rho * f * up, s.ledger.absorbed[0]);
+      EXPECT_NEAR(lamp, lamp_rho * f * up, 0.06 * up * lamp_rho * f + 1e-9)
+          << "light is brightest in the middle";
       if (rho > 0) {
         EXPECT_NEAR(front / up, 1, 0.02);
         EXPECT_NEAR(back / front, tau / rho, 0.002) << "the receiver is black: nothing arrives from below";
@@ -310,7 +305,6 @@ TEST(TransportTest, ASheetThatLosesNothingIsNotSeenInAFurnace) {
     (is_sheet ? sheets : walls) += radiance * area[n];
     (is_sheet ? sheet_area : wall_area) += area[n];
   }
-  printf("FURNACE walls %g sheet %g\n", 1 + walls / wall_area, sheets / sheet_area);
   EXPECT_NEAR(1 + walls / wall_area, 2, 0.01);
   EXPECT_NEAR(sheets / sheet_area, 2, 0.01);
   // A black room: what arrives is the walls' 1, what leaves each side is rho + tau of it.
@@ -327,7 +321,6 @@ TEST(TransportTest, ASheetThatLosesNothingIsNotSeenInAFurnace) {
     worst = std::max(worst, std::abs(double(t.total.Flux(n)[0]) / kPi - 0.8));
     ++nodes;
   }
-  printf("FURNACE black worst %g nodes %d\n", worst, nodes);
   EXPECT_GT(nodes, 20);
   EXPECT_LT(worst, 0.8 * 0.01);
 }
