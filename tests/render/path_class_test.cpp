@@ -246,7 +246,7 @@ TEST(PathClassTest, LGDE_OverAGlossyCeiling) {
   b.Up(0, 1, -0.5f, 0.5f, 0, b.receiver);
   b.Up(-1.3f, -0.7f, -0.3f, 0.3f, 1, b.lamp);
   b.Down(-1.5f, 1.5f, -1, 1, 2, b.AddMaterial("brushed", Metal(0.5f, Rgb(0.9f, 0.7f, 0.5f))));
-  ExpectReceiverAsTraced(b, "LGDE", kBoth, 0.03, 10000);
+  ExpectReceiverAsTraced(b, "LGDE", kBoth, 0.03, 10000, Options(Transport::kLinks, 512, 0.2f));
 }
 
 TEST(PathClassTest, LDGE_ADiffuseCeilingInAGlossyFloor) {
@@ -300,7 +300,7 @@ TEST(PathClassTest, LSSDE_ByTwoMirrors) {
   b.AddQuad({-1, -0.5f, -2}, {-1, -0.5f, 2}, {-1, 0.5f, 2}, {-1, 0.5f, -2}, black);
   ExpectReceiverAsLit(b, "LSSDE", kLinksOnly, 0.02,
                       {{-0.3f, 4, -1.3f}, {0.3f, 4, -1.3f}, {0.3f, 4, -0.7f}, {-0.3f, 4, -0.7f}},
-                      Options(Transport::kLinks, 4096, 0.25f));
+                      Options(Transport::kLinks, 3000, 0.3f));
 }
 
 // The lamp lights a plate that the receiver sees in the ceiling's mirror only.
