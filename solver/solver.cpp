@@ -398,7 +398,7 @@ class ProgressiveSolver {
   // Sparse links suffice for light that is dim against the first bounce: noise of a step is in proportion to
   // what it moves.
   int Thinning() const {
-    if (!s_.options.accelerate || s_.history.empty()) return 1;
+    if (!s_.options.accelerate || !s_.options.thin_late_links || s_.history.empty()) return 1;
     const double dim = s_.residual() / s_.history.front().residual;
     return dim > 0.3 ? 1 : dim > 0.1 ? 2 : dim > 0.03 ? 4 : 8;
   }
