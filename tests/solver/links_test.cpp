@@ -130,7 +130,7 @@ TEST(LinksTest, EndsFollowTheRenormalisedWeightsAndNeverAreHidden) {
   for (float& l : light) l = uniform(bits);
   std::array<Deviation, 4> by_count;   // of nodes that are not hidden
   std::array<Deviation, 3> by_corner;  // chosen or not, against its weight
-  int all_hidden = 0;
+  Deviation larger_of_two;             // beside a hidden one: chosen or not, against its renormalised weight
   for (uint32_t n = 0; n < room.mesh.node_count(); ++n) {
     if (hidden[n]) continue;
     const auto ends = links.of(n);
@@ -150,7 +150,6 @@ TEST(LinksTest, EndsFollowTheRenormalisedWeightsAndNeverAreHidden) {
       const NodeWeights w = Interpolate(room.mesh, hidden, where);
       if (w.count == 0) {
         EXPECT_EQ(ends[i], Links::kBlocked);
-        ++all_hidden;
         continue;
       }
       ASSERT_TRUE(Links::IsNode(ends[i]));
@@ -164,6 +163,10 @@ TEST(LinksTest, EndsFollowTheRenormalisedWeightsAndNeverAreHidden) {
       double expected = 0;
       for (int k = 0; k < w.count; ++k) expected += w.weight[k] * light[w.node[k]];
       by_count[w.count].Add(light[ends[i]] - expected);
+      if (w.count == 2) {
+        const int larger = w.weight[0] >= w.weight[1] ? 0 : 1;
+        larger_of_two.Add((ends[i] == w.node[larger]) - w.weight[larger]);
+      }
       if (w.count < 3) continue;
       for (int k = 0; k < 3; ++k) by_corner[k].Add((corner - corners.begin() == k) - where.weight[k]);
     }
@@ -171,6 +174,7 @@ TEST(LinksTest, EndsFollowTheRenormalisedWeightsAndNeverAreHidden) {
   EXPECT_GT(by_count[2].count, 500);
   EXPECT_GT(by_count[3].count, 1e5);
   for (const int k : {2, 3}) EXPECT_LT(std::abs(by_count[k].z()), 4) << k << " nodes";
+  EXPECT_LT(std::abs(larger_of_two.z()), 4) << larger_of_two.sum / larger_of_two.count;
   for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(by_corner[k].z()), 4) << "corner " << k;
 }
 
