@@ -2,9 +2,9 @@
 
 namespace lobe {
 
-SurfacePoint FindSurfacePoint(const Scene& scene, const Mesh& mesh, const Ray& ray, const RayHit& hit,
+HitPoint FindHitPoint(const Scene& scene, const Mesh& mesh, const Ray& ray, const RayHit& hit,
                               const Mesh::Location& where) {
-  SurfacePoint out;
+  HitPoint out;
   out.position = ray.origin + ray.direction * hit.t;
   out.geometric_normal = scene.GeometricNormal(scene.faces[hit.face]);
   if (hit.side == Side::kBack) out.geometric_normal = -out.geometric_normal;
@@ -16,7 +16,7 @@ SurfacePoint FindSurfacePoint(const Scene& scene, const Mesh& mesh, const Ray& r
   return out;
 }
 
-Vec3 MirrorDirection(const Vec3& wo, const SurfacePoint& at) {
+Vec3 MirrorDirection(const Vec3& wo, const HitPoint& at) {
   Vec3 reflected = 2.0f * wo.dot(at.normal) * at.normal - wo;
   const float into = reflected.dot(at.geometric_normal);
   if (into <= 0) reflected -= (into - 1e-4f) * at.geometric_normal;

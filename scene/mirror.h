@@ -7,18 +7,18 @@
 namespace lobe {
 
 /// Where a ray met a face, normals on the side that was met.
-struct SurfacePoint {
+struct HitPoint {
   Vec3 position;
   Vec3 geometric_normal;
   Vec3 normal;  ///< for shading: interpolated over a curved patch
 };
 
 /// `where`: mesh.Locate of the hit. Without nodes there the geometric normal is all there is.
-SurfacePoint FindSurfacePoint(const Scene& scene, const Mesh& mesh, const Ray& ray, const RayHit& hit,
+HitPoint FindHitPoint(const Scene& scene, const Mesh& mesh, const Ray& ray, const RayHit& hit,
                               const Mesh::Location& where);
 
 /// Mirror image of the unit direction `wo` (away from the surface) about the shading normal, unit. What would
 /// point into the surface, which an interpolated normal can do, is lifted just above it.
-Vec3 MirrorDirection(const Vec3& wo, const SurfacePoint& at);
+Vec3 MirrorDirection(const Vec3& wo, const HitPoint& at);
 
 }  // namespace lobe

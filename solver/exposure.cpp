@@ -277,7 +277,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
       }
       const MaterialLobes* lobes = mirrors[scene.faces[hit.face].material];
       if (!lobes) return;
-      const SurfacePoint at = FindSurfacePoint(scene, mesh, ray, hit, where);
+      const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
       throughput *= lobes->MirrorAlbedo(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
       ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at), tracer.epsilon());
     }

@@ -158,7 +158,7 @@ struct Links::Tracing {
       }
       if (materials[face.material].base.l_max >= 0 || hop.emission) hops.push_back(hop);
 
-      const SurfacePoint at = FindSurfacePoint(scene, mesh, ray, hit, where);
+      const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
       const Vec3 wo = -ray.direction;
       throughput *= materials[face.material].MirrorAlbedo(std::clamp(wo.dot(at.normal), 0.0f, 1.0f));
       ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),

@@ -34,7 +34,7 @@ TEST(MirrorDirectionTest, LiesInThePlaneAtTheSameAngleAndMirrorsBack) {
   Random random;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 n = random.Direction();
-    const SurfacePoint at{Vec3::Zero(), n, n};
+    const HitPoint at{Vec3::Zero(), n, n};
     const Vec3 wo = random.Above(n);
     if (wo.dot(n) < 1e-3f) continue;  // grazing is lifted
     const Vec3 wi = MirrorDirection(wo, at);
@@ -71,7 +71,7 @@ TEST(MirrorDirectionTest, WhatWouldPointIntoTheSurfaceIsLiftedJustAboveIt) {
   EXPECT_GT(lifted, 100);
 }
 
-TEST(FindSurfacePointTest, FlatFacesHaveTheFacesNormalOnTheSideThatWasMet) {
+TEST(FindHitPointTest, FlatFacesHaveTheFacesNormalOnTheSideThatWasMet) {
   SceneBuilder b;
   const uint32_t grey = b.AddMaterial("grey", Lambert{}, Rgb::Zero(), /*double_sided=*/true);
   b.AddQuad({-1, 0.5f, 1}, {1, 0.5f, 1}, {1, 0.9f, -1}, {-1, 0.9f, -1}, grey);
@@ -88,8 +88,8 @@ TEST(FindSurfacePointTest, FlatFacesHaveTheFacesNormalOnTheSideThatWasMet) {
     const Ray ray{target + 3 * away, 0, -2 * away, kFar};
     const RayHit hit = tracer.Intersect(ray);
     if (!hit.hit()) continue;
-    const SurfacePoint at =
-        FindSurfacePoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
+    const HitPoint at =
+        FindHitPoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
     // Ends where it was aimed, but for what grazing adds.
     EXPECT_LT((at.position - target).norm(), 3e-6f / std::abs(away.dot(n)));
     ++met[int(hit.side)];
@@ -101,7 +101,7 @@ TEST(FindSurfacePointTest, FlatFacesHaveTheFacesNormalOnTheSideThatWasMet) {
   EXPECT_GT(met[1], 100);
 }
 
-TEST(FindSurfacePointTest, CurvedPatchesHaveInterpolatedNormalsOnBothSides) {
+TEST(FindHitPointTest, CurvedPatchesHaveInterpolatedNormalsOnBothSides) {
   constexpr int kSegments = 24;
   SceneBuilder b;
   const Vec3 centre(0.2f, -0.3f, 0.4f);
@@ -118,8 +118,8 @@ TEST(FindSurfacePointTest, CurvedPatchesHaveInterpolatedNormalsOnBothSides) {
     const Ray ray{from, 0, direction, kFar};
     const RayHit hit = tracer.Intersect(ray);
     ASSERT_TRUE(hit.hit());
-    const SurfacePoint at =
-        FindSurfacePoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
+    const HitPoint at =
+        FindHitPoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
     const Vec3 radial = (at.position - centre).normalized() * (inside ? -1.0f : 1.0f);
     EXPECT_NEAR(at.normal.norm(), 1, 1e-6);
     // Linear interpolation between normals an angle h apart is off by at most h^2 / 8 in length and, since
@@ -131,7 +131,7 @@ TEST(FindSurfacePointTest, CurvedPatchesHaveInterpolatedNormalsOnBothSides) {
   EXPECT_LT(flattest, 1 - 5e-4) << "the faces' own normals are much further off";
 }
 
-TEST(FindSurfacePointTest, WithoutNodesTheGeometricNormalIsTakenAsItIs) {
+TEST(FindHitPointTest, WithoutNodesTheGeometricNormalIsTakenAsItIs) {
   SceneBuilder b;
   b.AddSphere({0, 0, 0}, 1, b.AddLambert(Rgb::Constant(0.5f)), 6);
   const Scene scene = b.Build();
@@ -143,7 +143,7 @@ TEST(FindSurfacePointTest, WithoutNodesTheGeometricNormalIsTakenAsItIs) {
   ASSERT_EQ(hit.side, Side::kBack);
   const Mesh::Location where = mesh.Locate(hit.face, hit.side, hit.u, hit.v);
   ASSERT_EQ(where.element, kNone);
-  const SurfacePoint at = FindSurfacePoint(scene, mesh, ray, hit, where);
+  const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
   EXPECT_EQ(at.normal, at.geometric_normal);
   EXPECT_LT((at.normal + scene.GeometricNormal(scene.faces[hit.face])).norm(), 1e-6);
 }
