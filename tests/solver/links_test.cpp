@@ -324,7 +324,7 @@ void ExpectChainsFollowMirrors(const Linked& room, const Links& links, bool curv
           if (!on) break;
           ++hop;
         }
-        const SurfacePoint at = FindSurfacePoint(room.scene, room.mesh, ray, hit, room.Locate(hit));
+        const HitPoint at = FindHitPoint(room.scene, room.mesh, ray, hit, room.Locate(hit));
         const Vec3 wo = -ray.direction;
         product *= std::get<MetallicRoughness>(material->reflectance)
                        .Fresnel(std::clamp(wo.dot(at.normal), 0.0f, 1.0f))
@@ -429,7 +429,7 @@ TEST(LinksTest, EmissionOverOnePlanarMirrorIsLeftToShootingExactlyOnce) {
         Ray ray = rays[i];
         RayHit hit = room.tracer.Intersect(ray);
         const bool ball = !room.mesh.patches[room.mesh.element_patch[room.Locate(hit).element]].planar;
-        const SurfacePoint at = FindSurfacePoint(room.scene, room.mesh, ray, hit, room.Locate(hit));
+        const HitPoint at = FindHitPoint(room.scene, room.mesh, ray, hit, room.Locate(hit));
         ray = {at.position + at.geometric_normal * room.tracer.epsilon(), 0,
                MirrorDirection(-ray.direction, at), kFar};
         hit = room.tracer.Intersect(ray);
