@@ -14,6 +14,7 @@
 #include "app/report.h"
 #include "app/resume_flags.h"
 #include "app/values.h"
+#include "scene/contacts.h"
 #include "scene/glb_writer.h"
 #include "scene/gltf_scene.h"
 #include "scene/input_error.h"
@@ -64,7 +65,9 @@ Solution ReadToResume(const SolveFlags& flags, const CLI::App& command) {
   RefuseOtherSettings(command, flags.options, state.options, flags.resume);
   state.options = WithGivenLimits(command, flags.options, state.options);
   if (!flags.scene.empty()) {
-    if (const std::string other = DifferenceOfScenes(ReadScene(flags.scene), state.scene); !other.empty()) {
+    const Scene scene =
+        CutAlongContacts(ReadScene(flags.scene), {.distance = state.options.contact_distance});
+    if (const std::string other = DifferenceOfScenes(scene, state.scene); !other.empty()) {
       throw InputError(flags.scene + ": is not the scene that " + flags.resume +
                        " was solved from: " + other);
     }
@@ -185,6 +188,8 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
     console.Say(flags.resume + "\n" + SceneText(start.scene));
     console.Say("going on from " + StopText(start));
   }
+  const bool resumes = !flags.resume.empty();
+  const size_t faces_read = start.scene.faces.size();
 
   TimeSplit split;
   const size_t warnings_told = start.scene.warnings.size();
@@ -209,6 +214,7 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
       control.checkpoint = [&](const Solution& s) { checkpoints.Write(s); };
       control.checkpoint_seconds = flags.checkpoint_seconds;
     }
+    if (!resumes) return Solve(std::move(start.scene), start.options, control);
     return Resume(std::move(start), control);
   }();
   const double cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
@@ -217,6 +223,11 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
 
   for (size_t i = warnings_told; i < solution.scene.warnings.size(); ++i) {
     console.Warn(solution.scene.warnings[i]);
+  }
+  const size_t faces_cut = solution.scene.faces.size() - faces_read;
+  if (faces_cut > 0) {
+    console.Say("contacts: cut along where surfaces touch, which made " + Count(faces_cut, "triangle") +
+                " more");
   }
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));
@@ -268,6 +279,11 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->type_name("FILE");
   SolveOptions& o = flags->options;
   solve->add_option("--edge", o.mesh.max_edge, "Longest edge of an element, metres")
+      ->type_name("M")
+      ->capture_default_str();
+  solve
+      ->add_option("--contact-distance", o.contact_distance,
+                   "Cut surfaces where others touch them or come nearer than this, metres; 0: nowhere")
       ->type_name("M")
       ->capture_default_str();
   solve

@@ -415,6 +415,32 @@ void Border() {
   Sweep<double>("border inset", {0.001, 0.02, 0.1, 0.3},
                 [](SolveOptions& o, double v) { o.mesh.border_inset = float(v); }, {kBoxes[0]});
 }
+void Contacts() {
+  for (const float edge : {0.8f, 0.4f, 0.2f}) {
+    char what[64];
+    std::snprintf(what, sizeof what, "contact distance, edge %g m", double(edge));
+    Sweep<double>(what, {0, 0.002},
+                  [edge](SolveOptions& o, double v) {
+                    o.mesh.max_edge = edge;
+                    o.contact_distance = float(v);
+                  },
+                  {kBoxes[0], kBoxes[1]});
+  }
+  std::printf("| scene | nodes, not cut | cut | hidden, not cut | cut |\n|---|---|---|---|---|\n");
+  for (const char* name : {"cornell_diffuse", "glossy_floor", "lampshade", "furnace_glossy"}) {
+    size_t nodes[2];
+    ptrdiff_t hidden[2];
+    for (const int cut : {0, 1}) {
+      SolveOptions o;
+      o.max_steps = 0;
+      if (!cut) o.contact_distance = 0;
+      const Solution s = SolveFile(name, o).solution;
+      nodes[cut] = s.mesh.node_count();
+      hidden[cut] = std::count(s.hidden.begin(), s.hidden.end(), 1);
+    }
+    std::printf("| %s | %zu | %zu | %td | %td |\n", name, nodes[0], nodes[1], hidden[0], hidden[1]);
+  }
+}
 void LobeError() {
   Sweep<double>("lobe error, lmax 20", {0.5, 0.3, 0.2, 0.1, 0.05},
                 [](SolveOptions& o, double v) { o.lobes.error = v; }, {kBoxes[1]});
@@ -609,6 +635,7 @@ const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"ba
                                                                             {"delta-areas", DeltaAreas},
                                                                             {"step-fraction", Portions},
                                                                             {"border", Border},
+                                                                            {"contacts", Contacts},
                                                                             {"lobe-error", LobeError},
                                                                             {"residual", Residual},
                                                                             {"accumulation", Accumulation},

@@ -26,8 +26,9 @@ struct Query {
   std::array<float, kMostRays> t, t_max;
   std::array<uint32_t, kMostRays> primitive;
 
-  explicit Query(bool coherent) {
+  explicit Query(bool coherent, RTCFilterFunctionN filter = nullptr) {
     rtcInitIntersectContext(&context);
+    context.filter = filter;
     context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
 
@@ -123,7 +124,7 @@ struct RayTracer::Impl {
 
   void Build(const Scene& from) {
     repeated = FindRepeatedFaces(from);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
     if (!from.faces.empty()) {
       RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -135,7 +136,6 @@ struct RayTracer::Impl {
         static_assert(sizeof(Vec3) == 3 * sizeof(float));
         std::memcpy(vertices, from.positions.data(), from.positions.size() * sizeof(Vec3));
         for (uint32_t f : repeated.kept) corner = std::copy_n(from.faces[f].vertex.data(), 3, corner);
-        rtcSetGeometryIntersectFilterFunction(geometry, &ChooseHit);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene, geometry);
       }
@@ -176,7 +176,7 @@ struct RayTracer::Impl {
   }
 
   RayHit IntersectOne(const Ray& ray) const {
-    Query query(false);
+    Query query(false, &ChooseHit);
     query.Reset(0, ray.t_max);
     RTCRayHit r = MakeRay(ray);
     rtcIntersect1(scene, &query.context, &r);
@@ -195,7 +195,7 @@ struct RayTracer::Impl {
 
   template <int width>
   void IntersectPackets(std::span<const Ray> rays, std::span<RayHit> hits) const {
-    Query query(true);
+    Query query(true, &ChooseHit);
     alignas(4 * width) int valid[width];
     for (size_t begin = 0; begin < rays.size(); begin += width) {
       typename Packet<width>::Hits p;
@@ -215,6 +215,37 @@ struct RayTracer::Impl {
         }
         hits[begin + i] = MakeHit(
             p.hit.primID[i], query.t[i], p.hit.u[i], p.hit.v[i],
+            p.hit.Ng_x[i] * p.ray.dir_x[i] + p.hit.Ng_y[i] * p.ray.dir_y[i] + p.hit.Ng_z[i] * p.ray.dir_z[i]);
+      }
+    }
+  }
+
+  template <int width>
+  void IntersectFan(const Vec3& origin, const float* x, const float* y, const float* z,
+                    std::span<RayHit> hits) const {
+    Query query(true);
+    alignas(4 * width) int valid[width];
+    typename Packet<width>::Hits p;
+    for (int i = 0; i < width; ++i) {
+      PutRay({origin, 0.0f, Vec3::UnitZ(), 0.0f}, i, &p.ray);
+    }
+    for (size_t begin = 0; begin < hits.size(); begin += width) {
+      const int count = static_cast<int>(std::min<size_t>(width, hits.size() - begin));
+      std::fill(valid, valid + width, 0);
+      std::fill(valid, valid + count, -1);
+      std::copy_n(x + begin, count, p.ray.dir_x);
+      std::copy_n(y + begin, count, p.ray.dir_y);
+      std::copy_n(z + begin, count, p.ray.dir_z);
+      std::fill(p.ray.tfar, p.ray.tfar + width, std::numeric_limits<float>::infinity());
+      std::fill(p.hit.geomID, p.hit.geomID + width, RTC_INVALID_GEOMETRY_ID);
+      Packet<width>::kIntersect(valid, scene, &query.context, &p);
+      for (int i = 0; i < count; ++i) {
+        if (p.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
+          hits[begin + i] = {};
+          continue;
+        }
+        hits[begin + i] = MakeHit(
+            p.hit.primID[i], p.ray.tfar[i], p.hit.u[i], p.hit.v[i],
             p.hit.Ng_x[i] * p.ray.dir_x[i] + p.hit.Ng_y[i] * p.ray.dir_y[i] + p.hit.Ng_z[i] * p.ray.dir_z[i]);
       }
     }
@@ -273,6 +304,15 @@ void RayTracer::Intersect(std::span<const Ray> rays, std::span<RayHit> hits, boo
   if (coherent && impl_->packet_width == 16) return impl_->IntersectPackets<16>(rays, hits);
   if (coherent && impl_->packet_width == 8) return impl_->IntersectPackets<8>(rays, hits);
   for (size_t i = 0; i < rays.size(); ++i) hits[i] = impl_->IntersectOne(rays[i]);
+}
+
+void RayTracer::IntersectFan(const Vec3& origin, const float* x, const float* y, const float* z,
+                             std::span<RayHit> hits) const {
+  if (impl_->packet_width == 16) return impl_->IntersectFan<16>(origin, x, y, z, hits);
+  if (impl_->packet_width == 8) return impl_->IntersectFan<8>(origin, x, y, z, hits);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    hits[i] = impl_->IntersectOne({origin, 0.0f, {x[i], y[i], z[i]}, std::numeric_limits<float>::infinity()});
+  }
 }
 
 void RayTracer::Occluded(std::span<const Ray> rays, std::span<uint8_t> occluded, bool coherent) const {

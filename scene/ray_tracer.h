@@ -42,6 +42,12 @@ class RayTracer {
   void Intersect(std::span<const Ray> rays, std::span<RayHit> hits, bool coherent) const;
   void Occluded(std::span<const Ray> rays, std::span<uint8_t> occluded, bool coherent) const;
 
+  /// Rays that fan out from one point and are always traced together, as a node's links are; hits.size() of
+  /// them, coordinates of the directions apart. Faster, also since which of several faces met at one t is
+  /// reported may depend on the other rays of the fan.
+  void IntersectFan(const Vec3& origin, const float* x, const float* y, const float* z,
+                    std::span<RayHit> hits) const;
+
   /// Distance by which ray origins are lifted off surfaces: a few rounding errors of coordinates this far
   /// from the origin, and no more, so that contacts do not leak.
   float epsilon() const { return epsilon_; }

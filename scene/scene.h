@@ -28,6 +28,9 @@ struct Face {
   std::array<uint32_t, 3> vertex;  ///< into Scene::positions
   uint32_t material;
   uint32_t surface;  ///< faces of one glTF node's primitive share it; welding stays inside
+  /// Bit k: the edge from corner k to k + 1 lies on a contact line (scene/contacts.h), where light may jump:
+  /// nodes are not shared across it. Set for the faces on both sides.
+  uint32_t contact = 0;
 };
 
 struct Camera {

@@ -115,10 +115,13 @@ void Flip(Bisection* bisection) {
 }
 
 /// Backs are bisected as fronts and then flipped, so that a face is cut alike on both sides.
+/// `wide`: see PartAtContacts; by vertex, shorter than those.
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
-                      const TessellateOptions& options, const std::function<void()>& poll) {
+                      const TessellateOptions& options, const std::function<void()>& poll,
+                      std::vector<bool>* wide) {
   Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
   std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<uint32_t> contact;
   triangles.reserve(group.size());
   for (const FaceSide& s : group) {
     const Face& face = scene.faces[s.face];
@@ -131,7 +134,9 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
       for (int k = 0; k < 3; ++k) corner[k] = welder.AddAlone(position[k], normal[k]);
     }
     triangles.push_back(corner);
+    contact.push_back(face.contact);
   }
+  *wide = PartAtContacts(contact, &welder, &triangles);
   Bisection bisection =
       BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack), poll);
   if (group.front().side == Side::kBack) Flip(&bisection);
@@ -169,8 +174,10 @@ class Layout {
  public:
   explicit Layout(Mesh* mesh) : mesh_(*mesh) {}
 
-  void Append(const Scene& scene, const Group& group, const Bisection& bisection) {
+  void Append(const Scene& scene, const Group& group, const Bisection& bisection, std::vector<bool> wide) {
     node_of_vertex_.assign(bisection.position.size(), kNone);
+    wide_ = std::move(wide);
+    wide_.resize(bisection.position.size());
     for (const std::vector<uint32_t>& piece : ConnectedPieces(bisection, group.size())) {
       Mesh::Patch patch;
       const Face& face = scene.faces[group[piece[0]].face];
@@ -223,7 +230,7 @@ class Layout {
     std::array<uint32_t, 3> nodes;
     for (int k = 0; k < 3; ++k) {
       uint32_t& node = node_of_vertex_[vertices[k]];
-      if (node == kNone) {
+      if (node == kNone || wide_[vertices[k]]) {  // at wide corners every element has a node of its own
         node = static_cast<uint32_t>(mesh_.node_count());
         mesh_.node_position.push_back(bisection.position[vertices[k]]);
         mesh_.node_normal.push_back(bisection.normal[vertices[k]]);
@@ -255,6 +262,7 @@ class Layout {
 
   Mesh& mesh_;
   std::vector<uint32_t> node_of_vertex_;
+  std::vector<bool> wide_;  // by vertex
 };
 
 }  // namespace
@@ -276,7 +284,9 @@ Mesh Tessellate(const Scene& scene, const TessellateOptions& options, const std:
   Layout layout(&mesh);
   for (const Group& group : groups) {
     if (poll) poll();
-    layout.Append(scene, group, BisectGroup(scene, bounds, group, options, poll));
+    std::vector<bool> wide;
+    const Bisection bisection = BisectGroup(scene, bounds, group, options, poll, &wide);
+    layout.Append(scene, group, bisection, std::move(wide));
   }
   PlaceSamplePoints(&mesh, options.border_inset);
   return mesh;

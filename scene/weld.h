@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -33,5 +34,16 @@ class Welder {
   std::vector<uint32_t> next_;  // in the same grid cell
   std::unordered_map<uint64_t, uint32_t> first_in_cell_;
 };
+
+/// Parts corners that hang together only across contact lines. `triangles` hold numbers of `welder`; bit k of
+/// `contact[i]` says that triangle i's edge from corner k to k + 1 is such a line (Face::contact). Corners at
+/// the end of a line keep one number if the triangles around it share edges all the way from one side to
+/// the other; new numbers come in order of triangles. Corners that touch no line are left alone.
+///
+/// Returns, by number, corners around which the surface extends by much more than a straight angle, as
+/// outside the foot of a box and around the end of a wall: shadows begin there, so light depends on the
+/// direction one comes from, and no single value will do.
+std::vector<bool> PartAtContacts(const std::vector<uint32_t>& contact, Welder* welder,
+                                 std::vector<std::array<uint32_t, 3>>* triangles);
 
 }  // namespace lobe

@@ -154,6 +154,13 @@ HemisphereBasis<Real>::HemisphereBasis(int l_max) : l_max_(l_max) {
 }
 
 template <typename Real>
+std::array<Real, 3> HemisphereBasis<Real>::Recurrence(int l, int m) const {
+  if (l == m) return {start_[m], 0, 0};
+  const int at = StepOffset(l_max_, (l - m) / 2) + m;
+  return {a_[at], b_[at], c_[at]};
+}
+
+template <typename Real>
 void HemisphereBasis<Real>::Evaluate(Real x, Real y, Real z, Real* out) const {
   if constexpr (sizeof(Real) == 4) {
     EvaluateFloat(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), x, y, z * z, out);

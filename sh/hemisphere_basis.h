@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "sh/vector.h"
@@ -34,6 +35,9 @@ class HemisphereBasis {
 
   int l_max() const { return l_max_; }
   int size() const { return CoefficientCount(l_max_); }
+
+  /// Factors of Q_lm(z^2) = (a z^2 + b) Q_(l-2)m - c Q_(l-4)m, for l > m; for l = m the constant Q_mm, 0, 0.
+  std::array<Real, 3> Recurrence(int l, int m) const;
 
   /// Writes H_k(x, y, z) for k < size(). (x, y, z) is a unit vector; only z^2 enters.
   void Evaluate(Real x, Real y, Real z, Real* out) const;

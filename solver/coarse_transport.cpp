@@ -103,11 +103,15 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
 std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total, const NodeLobes& unshot,
                                                          const std::vector<double>& node_area) const {
   Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(clusters_, 3), waiting = gathered;
+  std::vector<std::array<Rgb, 2>> flux(mesh_.node_count());
+  tbb::parallel_for(uint32_t(0), uint32_t(mesh_.node_count()), [&](uint32_t n) {
+    flux[n] = {total.Flux(n), unshot.Flux(n)};
+  });
   for (uint32_t n = 0; n < mesh_.node_count(); ++n) {
     if (node_area[n] == 0) continue;
     const int k = int(cluster_[mesh_.node_patch[n]]);
-    gathered.row(k) += (total.Flux(n).cast<double>() * node_area[n]).matrix().transpose();
-    waiting.row(k) += (unshot.Flux(n).cast<double>() * node_area[n]).matrix().transpose();
+    gathered.row(k) += (flux[n][0].cast<double>() * node_area[n]).matrix().transpose();
+    waiting.row(k) += (flux[n][1].cast<double>() * node_area[n]).matrix().transpose();
   }
   std::vector<std::array<float, 3>> ahead(mesh_.patches.size(), {0, 0, 0});
   for (int c = 0; c < 3; ++c) {

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
@@ -38,7 +40,9 @@ Ray RayFrom(const Vec3& point, const Vec3& normal, const Vec3& direction, float 
   return {point + normal * epsilon, 0.0f, direction, std::numeric_limits<float>::infinity()};
 }
 
-// Faces of one surface that share positions hang together.
+// Faces of one surface that share positions hang together, but not across contact lines: light may fall on
+// one side of those only. Where a line touches a position, faces must share an edge that is none. A line is
+// one for what stands on it, too: the bottom of a box is dark, its sides are not.
 std::vector<uint32_t> ConnectedPieces(const Scene& scene) {
   std::vector<uint32_t> parent(scene.faces.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -46,12 +50,41 @@ std::vector<uint32_t> ConnectedPieces(const Scene& scene) {
     while (parent[f] != f) f = parent[f] = parent[parent[f]];
     return f;
   };
-  std::map<std::tuple<uint32_t, float, float, float>, uint32_t> first;
+  using Place = std::array<float, 3>;
+  using Edge = std::array<Place, 2>;
+  const auto place = [&](uint32_t f, int k) {
+    const Vec3& p = scene.positions[scene.faces[f].vertex[k]];
+    return Place{p.x() + 0.0f, p.y() + 0.0f, p.z() + 0.0f};
+  };
+  const auto edge = [&](uint32_t f, int k) {
+    const Place a = place(f, k), b = place(f, (k + 1) % 3);
+    return a < b ? Edge{a, b} : Edge{b, a};
+  };
+  std::set<Place> on_line;
+  std::set<Edge> lines;
   for (uint32_t f = 0; f < scene.faces.size(); ++f) {
-    for (const uint32_t v : scene.faces[f].vertex) {
-      const Vec3& p = scene.positions[v];
-      const auto [it, added] = first.try_emplace({scene.faces[f].surface, p.x(), p.y(), p.z()}, f);
-      if (!added) parent[find(f)] = find(it->second);
+    for (int k = 0; k < 3; ++k) {
+      if (!(scene.faces[f].contact >> k & 1)) continue;
+      lines.insert(edge(f, k));
+      on_line.insert({place(f, k), place(f, (k + 1) % 3)});
+    }
+  }
+  std::map<std::pair<uint32_t, Place>, uint32_t> first;  // by surface
+  std::map<std::pair<uint32_t, Edge>, uint32_t> first_at_edge;
+  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
+    const uint32_t surface = scene.faces[f].surface;
+    for (int k = 0; k < 3; ++k) {
+      const Place here = place(f, k);
+      if (on_line.empty() || !on_line.contains(here)) {
+        const auto [it, added] = first.try_emplace({surface, here}, f);
+        if (!added) parent[find(f)] = find(it->second);
+        continue;
+      }
+      for (const int side : {k, (k + 2) % 3}) {
+        if (lines.contains(edge(f, side))) continue;
+        const auto [it, added] = first_at_edge.try_emplace({surface, edge(f, side)}, f);
+        if (!added) parent[find(f)] = find(it->second);
+      }
     }
   }
   for (uint32_t f = 0; f < parent.size(); ++f) parent[f] = find(f);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <tbb/parallel_for.h>
+
 #include "brdf/frame.h"
 
 namespace lobe {
@@ -19,25 +21,45 @@ int FirstSector(int ring, int thinning) { return thinning == 1 ? 0 : (5 * ring) 
 LinkField::LinkField(const Scene& scene, const Mesh& mesh) : scene_(scene), mesh_(mesh) {}
 
 LinkField::LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobes)
-    : scene_(scene), mesh_(mesh), lobes_(&lobes), radiance_(mesh.node_count()) {
-  const float scale = 1.0f / std::sqrt(2.0f * kPi);
-  for (uint32_t n = 0; n < mesh.node_count(); ++n) {
-    const PartDegrees& d = lobes.degrees(n);
-    if (!d.diffuse()) {
-      const auto all = lobes.all(n);
-      const bool dark = std::all_of(all.begin(), all.end(), [](float v) { return v == 0; });
-      radiance_[n] = {0, 0, 0, dark ? 0.0f : 1.0f};
-    } else if (d.base >= 0) {
-      const float* v = lobes.base(n);
-      radiance_[n] = {v[0] * scale, v[1] * scale, v[2] * scale, 0};
-    } else {
-      radiance_[n] = {0, 0, 0, 0};
-    }
+    : scene_(scene), mesh_(mesh), emission_(false), radiance_(mesh.node_count()) {
+  size_t packed = 0;
+  for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
+    const PartDegrees& d = lobes.patch_degrees(p);
+    reader_of_patch_.push_back(nullptr);
+    packed_begin_.push_back(packed);
+    if (d.diffuse()) continue;
+    reader_of_patch_.back() = &readers_.try_emplace(d.max_degree(), d.max_degree()).first->second;
+    packed += reader_of_patch_.back()->packed_size() * (mesh.patches[p].node_end - mesh.patches[p].node_begin);
   }
+  packed_.resize(packed, 0.0f);
+  const float scale = 1.0f / std::sqrt(2.0f * kPi);
+  tbb::parallel_for(uint32_t(0), uint32_t(mesh.node_count()), [&](uint32_t n) {
+    const PartDegrees& d = lobes.degrees(n);
+    const float *base = lobes.base(n), *gloss = lobes.gloss(n);
+    radiance_[n] = {0, 0, 0, 0};
+    if (const LobeReader* reader = reader_of_patch_[mesh.node_patch[n]]) {
+      const auto all = lobes.all(n);
+      if (std::all_of(all.begin(), all.end(), [](float v) { return v == 0; })) return;
+      radiance_[n][3] = 1;
+      float* to = packed_.data() + PackedAt(n);
+      if (d.base >= 0) reader->Pack(base, d.base, to);
+      if (d.gloss >= 0) reader->Pack(gloss, d.gloss, to);
+    } else if (d.base >= 0) {
+      radiance_[n] = {base[0] * scale, base[1] * scale, base[2] * scale, 0};
+    }
+  });
 }
 
-Rgb LinkField::Read(uint32_t node, const Vec3& wo_world, float* basis) const {
-  return lobes_->Radiance(node, Frame(mesh_.node_normal[node]).ToLocal(wo_world), basis);
+size_t LinkField::PackedAt(uint32_t node) const {
+  const uint32_t p = mesh_.node_patch[node];
+  return packed_begin_[p] + reader_of_patch_[p]->packed_size() * (node - mesh_.patches[p].node_begin);
+}
+
+Rgb LinkField::Read(uint32_t node, const Vec3& wo_world) const {
+  const Vec3 wo = BendToHorizon(Frame(mesh_.node_normal[node]).ToLocal(wo_world));
+  const auto rgb = reader_of_patch_[mesh_.node_patch[node]]->Read(packed_.data() + PackedAt(node), wo.x(),
+                                                                  wo.y(), wo.z());
+  return {rgb[0], rgb[1], rgb[2]};
 }
 
 const Rgb& LinkField::emitted(uint32_t node) const {
@@ -45,7 +67,7 @@ const Rgb& LinkField::emitted(uint32_t node) const {
 }
 
 LinkReceiver::LinkReceiver(const Mesh& mesh, const Links& links, const std::vector<MaterialLobes>& materials)
-    : mesh_(mesh), links_(links), materials_(materials), basis_(kMaxBasisSize) {}
+    : mesh_(mesh), links_(links), materials_(materials) {}
 
 LinkDirections& LinkReceiver::Directions(const LinkPattern& pattern) {
   for (auto& d : directions_) {
@@ -71,7 +93,7 @@ void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ri
         blue[i] = radiance[2];
         continue;
       }
-      value = field.Read(link, -frame.ToWorld(directions.Local(ring, sector)), basis_.data());
+      value = field.Read(link, -frame.ToWorld(directions.Local(ring, sector)));
       ++work.lobe_reads;
     } else if (Links::IsChain(link)) {
       for (const Links::Hop* hop = links_.chain(link);; ++hop) {
@@ -83,7 +105,7 @@ void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ri
             const float* r = field.radiance(hop->node);
             radiance = Rgb(r[0], r[1], r[2]);
           } else {
-            radiance = field.Read(hop->node, UnpackDirection(hop->direction), basis_.data());
+            radiance = field.Read(hop->node, UnpackDirection(hop->direction));
             ++work.lobe_reads;
           }
           for (int c = 0; c < 3; ++c) value[c] += radiance[c] * (float(hop->fresnel[c]) / 65535.0f);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "brdf/material_lobes.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "sh/lobe_reader.h"
 #include "solver/links.h"
 #include "solver/node_lobes.h"
 #include "solver/received.h"
@@ -22,22 +24,29 @@ class LinkField {
  public:
   /// Emission of emitters at the ends of chains.
   LinkField(const Scene& scene, const Mesh& mesh);
-  /// Lobes of nodes, zero where a node sends nothing. References are kept.
+  /// Lobes of nodes, zero where a node sends nothing. Makes a copy fit for reading.
   LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobes);
 
-  bool emission() const { return lobes_ == nullptr; }
+  bool emission() const { return emission_; }
   /// True where all light of the field is the same in every direction: reading is one load.
   bool diffuse(uint32_t node) const { return radiance_[node][3] == 0; }
   const float* radiance(uint32_t node) const { return radiance_[node].data(); }
-  /// Of a node that is not diffuse; may be negative. `basis` is scratch.
-  Rgb Read(uint32_t node, const Vec3& wo_world, float* basis) const;
+  /// Of a node that is not diffuse; may be negative.
+  Rgb Read(uint32_t node, const Vec3& wo_world) const;
   /// Emitted by the surface of `node`.
   const Rgb& emitted(uint32_t node) const;
 
  private:
+  size_t PackedAt(uint32_t node) const;
+
   const Scene& scene_;
   const Mesh& mesh_;
-  const NodeLobes* lobes_ = nullptr;
+  bool emission_ = true;
+  // Lobes as sh/lobe_reader.h wants them, base and gloss together; reader and place by patch and node.
+  std::vector<const LobeReader*> reader_of_patch_;
+  std::map<int, LobeReader> readers_;
+  std::vector<size_t> packed_begin_;  // per patch
+  std::vector<float> packed_;
   // Padded to 16 bytes; the fourth float is 0 for a diffuse node and 1 for one with a lobe to read.
   std::vector<std::array<float, 4>> radiance_;
 };
@@ -61,7 +70,7 @@ class LinkReceiver {
   const Links& links_;
   const std::vector<MaterialLobes>& materials_;
   std::vector<LinkDirections> directions_;
-  std::vector<float> ring_, basis_;  // ring_: three planes, one value a sector
+  std::vector<float> ring_;  // three planes, one value a sector
   IncidentMoments moments_;
 };
 

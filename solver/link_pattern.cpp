@@ -42,4 +42,18 @@ void LinkDirections::Start(uint32_t node, uint64_t seed) {
   }
 }
 
+void LinkDirections::World(const Frame& frame, float* x, float* y, float* z) const {
+  for (int r = 0; r < pattern_.rings; ++r) {
+    // A ring is centre + cosine of the sector times one radius + sine times the other.
+    const Vec3 centre = cos_theta_[r] * frame.z;
+    const Vec3 a = sin_theta_[r] * (cos_phi_[r] * frame.x + sin_phi_[r] * frame.y);
+    const Vec3 b = sin_theta_[r] * (cos_phi_[r] * frame.y - sin_phi_[r] * frame.x);
+    float* out[3] = {x, y, z};
+    for (int axis = 0; axis < 3; ++axis) {
+      float* to = out[axis] + size_t(r) * pattern_.sectors;
+      for (int j = 0; j < pattern_.sectors; ++j) to[j] = centre[axis] + a[axis] * cos_[j] + b[axis] * sin_[j];
+    }
+  }
+}
+
 }  // namespace lobe

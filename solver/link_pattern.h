@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "brdf/frame.h"
 #include "sh/vector.h"
 
 namespace lobe {
@@ -37,6 +38,8 @@ class LinkDirections {
   float CosTheta(int ring) const { return cos_theta_[ring]; }
   /// Azimuth of the ring's first sector, radians.
   float Phi(int ring) const { return phi_[ring]; }
+  /// All of them, ring by ring, in world space: arrays of pattern().count() coordinates.
+  void World(const Frame& frame, float* x, float* y, float* z) const;
   /// In the frame of the node's shading normal.
   Vec3 Local(int ring, int sector) const {
     const float c = cos_phi_[ring] * cos_[sector] - sin_phi_[ring] * sin_[sector];

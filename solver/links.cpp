@@ -63,10 +63,11 @@ struct Links::Tracing {
   const RayTracer& tracer;
   const std::vector<MaterialLobes>& materials;
   const Options& options;
-  std::vector<uint8_t> mirror;  // per material: links go on there
+  std::vector<uint8_t> mirror = {};  // per material: links go on there
+  bool any_mirror = false;
 
   struct Scratch {
-    std::vector<Ray> rays;
+    std::vector<float> x, y, z;  // directions
     std::vector<RayHit> hits;
     std::vector<Mesh::Location> where;
     std::vector<LinkDirections> directions;  // one per pattern met
@@ -99,29 +100,28 @@ struct Links::Tracing {
     const Frame frame(mesh.node_normal[node]);
     const Vec3& outward = mesh.node_sample_normal[node];
     const Vec3 origin = mesh.node_sample_position[node] + outward * tracer.epsilon();
-    scratch.rays.clear();
-    for (int r = 0; r < pattern.rings; ++r) {
-      for (int j = 0; j < pattern.sectors; ++j) {
-        scratch.rays.push_back({origin, 0.0f, frame.ToWorld(directions.Local(r, j)),
-                                std::numeric_limits<float>::infinity()});
-      }
-    }
-    scratch.hits.resize(scratch.rays.size());
-    scratch.where.resize(scratch.rays.size());
-    tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+    const size_t count = size_t(pattern.count());
+    for (auto* v : {&scratch.x, &scratch.y, &scratch.z}) v->resize(count);
+    scratch.hits.resize(count);
+    scratch.where.resize(count);
+    directions.World(frame, scratch.x.data(), scratch.y.data(), scratch.z.data());
+    tracer.IntersectFan(origin, scratch.x.data(), scratch.y.data(), scratch.z.data(), scratch.hits);
     locator.Locate(scratch.hits, scratch.where);
-    scratch.traced += scratch.rays.size();
+    scratch.traced += count;
     RandomStream random(Mix(Mix(options.seed, 0x7a5), node));
-    for (size_t i = 0; i < scratch.rays.size(); ++i) {
+    for (size_t i = 0; i < count; ++i) {
       const RayHit& hit = scratch.hits[i];
       if (!hit.hit()) {
         out[i] = kEscaped;
         continue;
       }
       const Mesh::Location& where = scratch.where[i];
-      out[i] = where.element != kNone && mirror[scene.faces[hit.face].material]
-                   ? TraceChain(scratch.rays[i], hit, random, scratch, hops)
-                   : End(where, random);
+      if (any_mirror && where.element != kNone && mirror[scene.faces[hit.face].material]) {
+        const Ray ray{origin, 0.0f, {scratch.x[i], scratch.y[i], scratch.z[i]}, hit.t};
+        out[i] = TraceChain(ray, hit, random, scratch, hops);
+      } else {
+        out[i] = End(where, random);
+      }
     }
   }
 
@@ -191,9 +191,10 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
   targets_.resize(links);
   hidden_.assign(mesh.node_count(), 0);
 
-  Tracing tracing{scene, mesh, ElementLocator(mesh), tracer, materials, options_, {}};
+  Tracing tracing{scene, mesh, ElementLocator(mesh), tracer, materials, options_};
   for (const auto& m : materials) {
     tracing.mirror.push_back(options.follow_mirrors && m.kind() == GlossKind::kMirror);
+    tracing.any_mirror |= tracing.mirror.back() != 0;
   }
   const size_t nodes = mesh.node_count();
   const uint32_t blocks = uint32_t((nodes + kBlockOfNodes - 1) / kBlockOfNodes);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <tbb/parallel_for.h>
+
 #include "brdf/frame.h"
 #include "sh/lobe.h"
 #include "sh/simd.h"
@@ -49,10 +51,10 @@ std::span<const float> NodeLobes::patch_values(uint32_t patch) const {
 void NodeLobes::SetZero() { std::fill(values_.begin(), values_.end(), 0.0f); }
 
 void NodeLobes::AddScaled(const NodeLobes& other, const std::vector<std::array<float, 3>>& share) {
-  for (uint32_t n = 0; n < node_count(); ++n) {
+  tbb::parallel_for(uint32_t(0), uint32_t(node_count()), [&](uint32_t n) {
     const auto& s = share[node_patch_[n]];
     SubtractScaled(n, other, {-s[0], -s[1], -s[2]});
-  }
+  });
 }
 
 void NodeLobes::SubtractScaled(uint32_t node, const NodeLobes& other, const std::array<float, 3>& share) {

@@ -31,6 +31,8 @@ std::string SolveOptions::Validate() const {
     out << "refine rounds " << refine.rounds << " is out of range: 0 to 16 is expected";
   } else if (refine.max_nodes < 1) {
     out << "max nodes " << refine.max_nodes << " is out of range: 1 or more is expected";
+  } else if (!(contact_distance >= 0) || !std::isfinite(contact_distance)) {
+    out << "contact distance " << contact_distance << " m is out of range: 0 or a finite length is expected";
   } else if (lobes.l_max < 0 || lobes.l_max > 32) {
     out << "lmax " << lobes.l_max << " is out of range: 0 to 32 is expected";
   } else if (lobes.force_l_max < -1 || lobes.force_l_max > 32) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "brdf/material_lobes.h"
+#include "scene/contacts.h"
 #include "scene/tessellate.h"
 #include "solver/refinement.h"
 
@@ -29,6 +30,9 @@ struct SolveOptions {
   /// Shoot ahead what a coarse solution expects, and use fewer links for dim late bounces. Off: plain sweeps,
   /// slower, to check these against.
   bool accelerate = true;
+  /// Faces are cut along the lines where other faces touch them or come nearer than this, metres; 0: not at all
+  /// (scene/contacts.h).
+  float contact_distance = ContactOptions{}.distance;
   /// Shadow rays per node over all emitters together, shared out by their expected contribution, >= 1.
   /// Time grows in proportion; the error of soft shadows falls about as its inverse. Default measured in
   /// docs/validation.md#light-samples.

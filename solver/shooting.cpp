@@ -24,6 +24,11 @@ constexpr float kPerCoefficient = 8.0f;
 // The mean radiance of a glossy cell says little of what it sends one way; cells are cut this much finer.
 constexpr float kGlossyCaution = 4.0f;
 
+// An emitter whose edges are shorter than this times its distance is taken by points spread evenly over it,
+// without cutting: the kernel hardly varies. So many points for each threshold of light, as cutting would give.
+constexpr float kSeenSmall = 0.7f;
+constexpr float kPerThreshold = 1.4f;
+
 // Halvings below a root; 2^40 pieces.
 constexpr int kMaxDepth = 40;
 
@@ -241,6 +246,39 @@ Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
   return materials_[mesh_.patches[mirror.patch].material].MirrorAlbedo(std::clamp(cosine, 0.0f, 1.0f));
 }
 
+bool Receiver::EmitEvenly(const ShootingField::Root& root, uint32_t node, int samples, RandomStream& random) {
+  const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
+  const auto& p = root.corners;
+  const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f) - point;
+  const float distance = middle.norm();
+  if (LongestEdgeSquared(p) > kSeenSmall * kSeenSmall * distance * distance ||
+      middle.dot(normal) < 0.3f * distance || -middle.dot(root.normal) < 0.3f * distance) {
+    return false;
+  }
+  const float irradiance = LightOfTriangle(point, normal, p).irradiance;
+  const float epsilon = tracer_.epsilon();
+  const Vec3 from = point + mesh_.node_sample_normal[node] * epsilon;
+  const float u0 = random.Next(), v0 = random.Next();
+  const size_t first = rays_.size();
+  float sum = 0;
+  for (int i = 0; i < samples; ++i) {
+    // Plastic-number sequence (Roberts 2018), shifted at random, onto the triangle.
+    float u = u0 + 0.7548777f * float(i), v = v0 + 0.5698403f * float(i);
+    u = std::sqrt(u - std::floor(u));
+    v = (v - std::floor(v)) * u;
+    const Vec3 target = p[0] * (1 - u) + p[1] * (u - v) + p[2] * v;
+    const Vec3 to = target - point;
+    const float r2 = to.squaredNorm();
+    const float kernel = to.dot(normal) * -to.dot(root.normal) / (r2 * r2);
+    sum += kernel;
+    rays_.push_back({from, 0.0f, target + root.normal * epsilon - from, 1.0f});
+    deltas_.push_back({to / std::sqrt(r2), root.radiance * kernel, root.mirror});
+  }
+  // Together they bring what the whole triangle brings.
+  for (size_t i = first; i < deltas_.size(); ++i) deltas_[i].irradiance *= irradiance / sum;
+  return true;
+}
+
 void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float received_before,
                    uint64_t seed, Received& work) {
   const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
@@ -270,6 +308,10 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   for (size_t i = 0; i < roots.size(); ++i) {
     if (!(expected_[i] > 0)) continue;
     const auto& root = roots[i];
+    if (root.cell == kNone && expected_[i] > threshold &&
+        EmitEvenly(root, node, int(std::ceil(kPerThreshold * expected_[i] / threshold)), random)) {
+      continue;
+    }
     stack_.push_back({root.corners,
                       {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()},
                       root.radiance,

@@ -96,6 +96,8 @@ class Receiver {
            Received& work);
   void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
              const Vec3& normal, const Cell& parent);
+  // All of an emitter that is seen small, as `samples` points; false if it is not seen small.
+  bool EmitEvenly(const ShootingField::Root& root, uint32_t node, int samples, RandomStream& random);
   void Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node, const Cell& cell,
             float weight, RandomStream& random, Received& work);
 

@@ -213,16 +213,21 @@ class SolutionWriter {
     record["exposureScale"] = JsonNumber(colours_.exposure_scale);
     record["surfaceNames"] = s_.scene.surface_names;
     std::vector<uint32_t> indices, material, surface;
+    std::vector<uint8_t> contact;
     for (const Face& face : s_.scene.faces) {
       indices.insert(indices.end(), face.vertex.begin(), face.vertex.end());
       material.push_back(face.material);
       surface.push_back(face.surface);
+      contact.push_back(static_cast<uint8_t>(face.contact));
     }
     record["faces"] = {{"positions", glb_.AddFloats(Floats(s_.scene.positions), "VEC3", Target::kNone)},
                        {"normals", glb_.AddFloats(Floats(s_.scene.normals), "VEC3", Target::kNone)},
                        {"indices", glb_.AddUints(indices, Target::kNone)},
                        {"material", glb_.AddUints(material, Target::kNone)},
                        {"surface", glb_.AddUints(surface, Target::kNone)}};
+    if (std::any_of(contact.begin(), contact.end(), [](uint8_t bits) { return bits != 0; })) {
+      record["faces"]["contact"] = glb_.AddBytes(contact);
+    }
     return record;
   }
 

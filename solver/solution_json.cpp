@@ -63,6 +63,7 @@ json Settings(const SolveOptions& o) {
   json out = {{"maxEdge", JsonNumber(o.mesh.max_edge)},
               {"creaseAngle", JsonNumber(o.mesh.crease_angle)},
               {"borderInset", JsonNumber(o.mesh.border_inset)},
+              {"contactDistance", JsonNumber(o.contact_distance)},
               {"lMax", o.lobes.l_max},
               {"lobeError", o.lobes.error},
               {"refineError", o.refine.error},
@@ -87,6 +88,8 @@ SolveOptions ReadSettings(const GltfJson& fields) {
   o.mesh.max_edge = RequiredFloat(fields, "maxEdge");
   o.mesh.crease_angle = RequiredFloat(fields, "creaseAngle");
   o.mesh.border_inset = RequiredFloat(fields, "borderInset");
+  // Solutions older than contact lines have none.
+  o.contact_distance = fields.Has("contactDistance") ? RequiredFloat(fields, "contactDistance") : 0.0f;
   o.lobes.l_max = RequiredInt(fields, "lMax");
   o.lobes.error = RequiredNumber(fields, "lobeError");
   o.lobes.force_l_max = fields.Has("forceLMax") ? RequiredInt(fields, "forceLMax") : -1;

@@ -104,11 +104,15 @@ class SolutionReader {
     ExpectBelow(faces, "indices", indices, positions.size() / 3);
     ExpectBelow(faces, "material", material, scene.materials.size());
     ExpectBelow(faces, "surface", surface, scene.surface_names.size());
+    std::vector<uint32_t> contact(count);
+    if (faces.Has("contact")) contact = Uints(faces, "contact");
+    ExpectCount(faces, "contact", contact.size(), count);
+    ExpectBelow(faces, "contact", contact, 8);
     scene.positions = Vectors(positions);
     scene.normals = Vectors(normals);
     for (size_t f = 0; f < count; ++f) {
       scene.faces.push_back(
-          {{indices[3 * f], indices[3 * f + 1], indices[3 * f + 2]}, material[f], surface[f]});
+          {{indices[3 * f], indices[3 * f + 1], indices[3 * f + 2]}, material[f], surface[f], contact[f]});
     }
   }
 

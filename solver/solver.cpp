@@ -14,6 +14,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "scene/contacts.h"
 #include "scene/opposite_nodes.h"
 #include "solver/coarse_transport.h"
 #include "solver/exposure.h"
@@ -478,17 +479,16 @@ class ProgressiveSolver {
   }
 
   // Makes a gathered step part of the solution: total = what was gathered of all that was ever shot, and
-  // unshot = total - all that was ever shot. What was shot ahead is so taken back. In node order: sums do not
-  // depend on threads.
+  // unshot = total - all that was ever shot. What was shot ahead is so taken back.
   void Commit(int step, const std::vector<std::array<float, 3>>& ahead, uint32_t shooters) {
     PassThrough();
-    Ledger& ledger = s_.ledger;
-    double unshot = 0;
-    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+    const bool all_was_shot = by_links_ || s_.options.step_fraction >= 1;
+    flux_.resize(s_.mesh.node_count());
+    tbb::parallel_for(uint32_t(0), uint32_t(s_.mesh.node_count()), [&](uint32_t n) {
       const auto gained = gained_.all(n);
       if (s_.hidden[n]) std::fill(gained.begin(), gained.end(), 0.0f);
       auto total = s_.total.all(n), left = s_.unshot.all(n);
-      if (by_links_ || s_.options.step_fraction >= 1) {
+      if (all_was_shot) {
         std::fill(left.begin(), left.end(), 0.0f);
       } else if (step > 0) {
         const auto shot = shooting_.all(n);
@@ -499,19 +499,25 @@ class ProgressiveSolver {
         total[i] += gained[i];
         left[i] += gained[i];
       }
-      rays_ += got_[n].rays;
-      if (s_.hidden[n]) continue;
+      flux_[n] = {gained_.Flux(n), s_.unshot.Flux(n)};
+    });
+    // In node order: sums do not depend on threads.
+    Ledger& ledger = s_.ledger;
+    double unshot = 0;
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
       const Received& r = got_[n];
+      rays_ += r.rays;
+      if (s_.hidden[n]) continue;
       const double area = area_[n];
       if (!s_.received.empty()) s_.received[n] += r.delivered.sum();
-      const Eigen::Array3d flux(gained_.Flux(n).cast<double>());
+      const Eigen::Array3d flux(flux_[n].gained.cast<double>());
       ledger.delivered += r.delivered.cast<double>() * area;
       ledger.absorbed += r.absorbed.cast<double>() * area;
       (by_links_ ? ledger.passed_on : ledger.mirrored) += r.mirrored.cast<double>() * area;
       ledger.reflected += flux * area;
       ledger.truncated += ((r.reflected + r.through).cast<double>() - flux) * area;
       // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
-      unshot += s_.unshot.Flux(n).cast<double>().abs().sum() * area;
+      unshot += flux_[n].unshot.cast<double>().abs().sum() * area;
       if (TimeSplit* split = control_.time_split) {
         split->lobe_reads += r.lobe_reads;
         split->lobe_writes += r.lobe_writes;
@@ -596,6 +602,10 @@ class ProgressiveSolver {
   std::vector<double> area_;
   NodeLobes shooting_, gained_;
   std::vector<Received> got_;
+  struct NodeFlux {
+    Rgb gained, unshot;
+  };
+  std::vector<NodeFlux> flux_;  // of the last step
   Eigen::Array3d emitted_ = Eigen::Array3d::Zero();
   Phase phase_ = Phase::kPreparation;
   bool short_of_memory_ = false;  // some of the mesh could not be refined
@@ -610,13 +620,17 @@ class ProgressiveSolver {
 
 Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& control) {
   if (const std::string wrong = options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
+  scene = CutAlongContacts(std::move(scene), {.distance = options.contact_distance});
   return ProgressiveSolver(std::move(scene), options, control).Run();
 }
 
 Solution Resume(Solution state, const SolveControl& control) {
   if (const std::string wrong = state.options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
   // Nothing was worth keeping: emission is a step like any other, done or not.
-  if (state.history.empty()) return Solve(std::move(state.scene), state.options, control);
+  if (state.history.empty()) {
+    // The scene is cut along its contacts already.
+    return ProgressiveSolver(std::move(state.scene), state.options, control).Run();
+  }
   return ProgressiveSolver(std::move(state), control).Continue();
 }
 

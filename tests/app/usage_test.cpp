@@ -40,6 +40,7 @@ TEST(UsageTest, SolveFlagsOutOfRange) {
   ExpectUsageError(With(kSolve, {"--residual", "1"}), {"residual"});
   ExpectUsageError(With(kSolve, {"--residual", "0"}), {"residual"});
   ExpectUsageError(With(kSolve, {"--step-fraction", "1.5"}), {"step fraction"});
+  ExpectUsageError(With(kSolve, {"--contact-distance", "-0.1"}), {"contact distance -0.1"});
   ExpectUsageError(With(kSolve, {"--max-steps", "-1"}), {"step limit"});
   ExpectUsageError(With(kSolve, {"--max-seconds", "-2"}), {"time limit"});
   ExpectUsageError(With(kSolve, {"--threads", "0"}), {"--threads"});

@@ -344,6 +344,47 @@ TEST(TessellateTest, BothSidesOfAFaceAreCutAlike) {
   }
 }
 
+/// Four triangles around the middle of a unit square, seen from both sides, with Face::contact.
+Scene Pinwheel(const std::array<uint32_t, 4>& contact) {
+  SceneBuilder b;
+  const uint32_t grey = Grey(&b, true);
+  const std::vector<Vec3> p = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0}};
+  b.AddMesh(p, std::vector<Vec3>(5, Vec3::UnitZ()), {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, grey);
+  Scene scene = b.Build();
+  for (int i = 0; i < 4; ++i) scene.faces[i].contact = contact[i];
+  return scene;
+}
+
+TEST(TessellateTest, NodesAreNotSharedAcrossContactLines) {
+  // From corner 0 by way of the middle to corner 2: edges 2 (to corner 0) and 1 (from the next corner).
+  const Scene scene = Pinwheel({4, 2, 4, 2});
+  const Mesh mesh = WithEdge(scene, 10);
+  ASSERT_EQ(mesh.patches.size(), 4u) << "two pieces, two sides";
+  for (const Mesh::Patch& p : mesh.patches) EXPECT_EQ(p.node_end - p.node_begin, 4u);
+  const Mesh fine = WithEdge(scene, 0.1f);
+  ASSERT_EQ(fine.patches.size(), 4u);
+  ExpectMeshLaws(scene, fine, 0.1f);
+  for (const Mesh::Patch& p : fine.patches) {
+    for (uint32_t n = p.node_begin; n < p.node_end; ++n) {
+      const Vec3& at = fine.node_position[n];
+      const Vec3& sample = fine.node_sample_position[n];
+      if (at.x() != at.y()) continue;
+      EXPECT_GT(std::abs(sample.x() - sample.y()), 1e-5f) << "on the line itself";
+    }
+  }
+}
+
+TEST(TessellateTest, SurfaceHangsTogetherAroundTheEndOfAContactLine) {
+  const Scene scene = Pinwheel({4, 0, 0, 2});  // from corner 0 to the middle
+  const Mesh mesh = WithEdge(scene, 10);
+  ASSERT_EQ(mesh.patches.size(), 2u) << "two sides";
+  // Corner 0 twice; around the middle, where shadows of a wall's end begin, a node for each of four elements.
+  EXPECT_EQ(mesh.node_count(), 2u * (2 + 3 + 4));
+  const Mesh fine = WithEdge(scene, 0.1f);
+  EXPECT_EQ(fine.patches.size(), 2u);
+  EXPECT_NEAR(MeshArea(fine), 2, 1e-5);
+}
+
 TEST(TessellateTest, OnlyWantedSidesGetNodes) {
   SceneBuilder b;
   b.AddQuad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, Grey(&b, true));

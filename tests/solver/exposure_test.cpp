@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/contacts.h"
 #include "scene/input_error.h"
 #include "scene/tessellate.h"
 #include "solver/links.h"
@@ -134,6 +135,24 @@ TEST(ExposureTest, WhatASmallSheetHidesInALargeSceneIsLit) {
     const Scene scene = b.Build();
     const auto pearl = LitFaces(scene, "pearl", Side::kFront, seed);
     EXPECT_EQ(std::count(pearl.begin(), pearl.end(), true), long(pearl.size())) << "seed " << seed;
+  }
+}
+
+TEST(ExposureTest, FloorUnderABoxIsUnlitOnceCutAlongTheContact) {
+  for (const float y0 : {0.0f, -0.01f}) {  // standing, and sunk a centimetre
+    const Scene scene = CutAlongContacts(RoomWithBox(true, y0));
+    const auto lit = FindLitSides(scene, RayTracer(scene), 1);
+    int under = 0, beside = 0;
+    for (size_t f = 0; f < scene.faces.size(); ++f) {
+      const auto p = scene.Corners(scene.faces[f]);
+      const Vec3 centre = (p[0] + p[1] + p[2]) / 3;
+      if (scene.faces[f].surface != 0 || centre.y() != 0) continue;
+      const bool is_under = centre.x() > 1 && centre.x() < 2 && centre.z() > 1 && centre.z() < 2;
+      EXPECT_EQ(lit[2 * f], !is_under) << "at " << centre.transpose();
+      ++(is_under ? under : beside);
+    }
+    EXPECT_GE(under, 2);
+    EXPECT_GE(beside, 6);
   }
 }
 

@@ -448,6 +448,7 @@ TEST_F(DamagedSolutionTest, OtherBasisOrFrameIsRefused) {
 TEST_F(DamagedSolutionTest, MissingAndMistypedMembersOfTheDocumentAreNamed) {
   ExpectRefused([](json& d) { Root(d).erase("settings"); }, {"maxEdge"});
   ExpectRefused([](json& d) { Root(d)["settings"]["maxEdge"] = -1; }, {"longest edge -1"});
+  ExpectRefused([](json& d) { Root(d)["settings"]["contactDistance"] = -1; }, {"contact distance -1"});
   ExpectRefused([](json& d) { Root(d)["settings"]["seed"] = "12x"; }, {"seed", "12x"});
   ExpectRefused([](json& d) { Root(d)["settings"]["seed"] = "99999999999999999999"; }, {"seed"});
   ExpectRefused([](json& d) { Root(d)["stopReason"] = "bored"; }, {"stopReason", "bored", "converged"});

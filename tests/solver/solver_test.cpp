@@ -187,6 +187,36 @@ TEST(SolverTest, LedgerCountsWhatMirrorsReflect) {
 
 // Portions make the shot field patchy and delta areas stand for it less well: 1.2 % of the light is lost at
 // 96 delta areas, 0.1 % at 1536 (docs/validation.md#step-fraction).
+// Two rooms with one floor, one ceiling and two long walls, parted by a sheet without thickness.
+TEST(SolverTest, NoLightGetsUnderAThinWall) {
+  SceneBuilder b;
+  const uint32_t white = b.AddLambert(Rgb::Constant(0.7f));
+  b.AddBox({0, 0, 0}, {4, 2, 3}, white, true);
+  constexpr float kSheet = 1.9f;
+  b.AddQuad({kSheet, 0, 0}, {kSheet, 2, 0}, {kSheet, 2, 3}, {kSheet, 0, 3},
+            b.AddMaterial("sheet", Lambert{Rgb::Constant(0.7f)}, Rgb::Zero(), true));
+  b.AddQuad({0.5f, 1.9f, 1}, {1.5f, 1.9f, 1}, {1.5f, 1.9f, 2}, {0.5f, 1.9f, 2},
+            b.AddEmitter(Rgb::Constant(10)));
+  SolveOptions options = Coarse();
+  const auto dark_and_light = [&] {
+    const Solution s = Solve(b.Build(), options);
+    double power[2] = {0, 0};
+    const std::vector<uint8_t> none(s.hidden.size());
+    const std::vector<double> area = NodeAreas(s.mesh, none);
+    for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
+      const float x = s.mesh.node_position[n].x();
+      const bool dark = x > kSheet || (x == kSheet && s.mesh.node_sample_position[n].x() > kSheet);
+      power[dark] += s.total.Flux(n).sum() * area[n];
+    }
+    return std::pair(power[1], power[0]);
+  };
+  const auto [dark, light] = dark_and_light();
+  EXPECT_EQ(dark, 0);
+  EXPECT_GT(light, 1);
+  options.contact_distance = 0;
+  EXPECT_GT(dark_and_light().first, 0) << "which it does over elements that lie in both rooms";
+}
+
 TEST(SolverTest, ShootingInPortionsReachesTheSameSolution) {
   const Scene scene = MakeRoom(Metal(0.5f)).scene;
   SolveOptions whole = Coarse();
