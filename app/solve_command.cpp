@@ -188,7 +188,6 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
     console.Say(flags.resume + "\n" + SceneText(start.scene));
     console.Say("going on from " + StopText(start));
   }
-  const bool resumes = !flags.resume.empty();
   const size_t faces_read = start.scene.faces.size();
 
   TimeSplit split;
@@ -214,20 +213,20 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
       control.checkpoint = [&](const Solution& s) { checkpoints.Write(s); };
       control.checkpoint_seconds = flags.checkpoint_seconds;
     }
-    if (!resumes) return Solve(std::move(start.scene), start.options, control);
-    return Resume(std::move(start), control);
+    return flags.resume.empty() ? Solve(std::move(start.scene), start.options, control)
+                                : Resume(std::move(start), control);
   }();
   const double cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
 
   WriteSolution(solution, flags.output);
 
-  for (size_t i = warnings_told; i < solution.scene.warnings.size(); ++i) {
-    console.Warn(solution.scene.warnings[i]);
-  }
   const size_t faces_cut = solution.scene.faces.size() - faces_read;
   if (faces_cut > 0) {
     console.Say("contacts: cut along where surfaces touch, which made " + Count(faces_cut, "triangle") +
                 " more");
+  }
+  for (size_t i = warnings_told; i < solution.scene.warnings.size(); ++i) {
+    console.Warn(solution.scene.warnings[i]);
   }
   console.Say(MaterialText(MaterialRows(solution)));
   console.Say(LedgerText(solution.ledger));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <limits>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include <embree3/rtcore.h>
 #include <tbb/global_control.h>
 
+#include "bench/timing.h"
 #include "brdf/frame.h"
 #include "scene/gltf_scene.h"
 #include "solver/exposure.h"
@@ -23,12 +23,6 @@
 
 namespace lobe {
 namespace {
-
-double CpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 // Embree with nothing around it: no filter, no choice among equal hits, rays ready in packets of 16.
 class BareEmbree {

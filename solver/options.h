@@ -27,12 +27,15 @@ struct SolveOptions {
   /// Time and memory (4 bytes a link) grow in proportion; noise falls a little faster than the square root.
   /// Default measured in docs/validation.md#links.
   int links = 512;
-  /// Shoot ahead what a coarse solution expects, and use fewer links for dim late bounces. Off: plain sweeps,
+  /// Shoot ahead what a coarse solution expects: the same fixed point in fewer sweeps. Off: plain sweeps,
   /// slower, to check these against.
   bool accelerate = true;
   /// Faces are cut along the lines where other faces touch them or come nearer than this, metres; 0: not at all
   /// (scene/contacts.h).
   float contact_distance = ContactOptions{}.distance;
+  /// With accelerate: fewer links for dim late bounces, each sweep quicker and a little noisier. Off: the
+  /// fixed point is that of plain sweeps to the last digits (TransportTest.OvershootingReaches...).
+  bool thin_late_links = true;
   /// Shadow rays per node over all emitters together, shared out by their expected contribution, >= 1.
   /// Time grows in proportion; the error of soft shadows falls about as its inverse. Default measured in
   /// docs/validation.md#light-samples.

@@ -72,6 +72,7 @@ json Settings(const SolveOptions& o) {
               {"transport", Name(o.transport)},
               {"links", o.links},
               {"accelerate", o.accelerate},
+              {"thinLateLinks", o.thin_late_links},
               {"lightSamples", o.light_samples},
               {"deltaAreas", o.delta_areas},
               {"residual", o.residual},
@@ -99,6 +100,7 @@ SolveOptions ReadSettings(const GltfJson& fields) {
   o.transport = ReadName(fields, "transport", kTransports);
   o.links = RequiredInt(fields, "links");
   o.accelerate = fields.Bool("accelerate", true);
+  o.thin_late_links = fields.Bool("thinLateLinks", true);
   o.light_samples = RequiredInt(fields, "lightSamples");
   o.delta_areas = RequiredInt(fields, "deltaAreas");
   o.residual = RequiredNumber(fields, "residual");

@@ -398,7 +398,7 @@ class ProgressiveSolver {
   // Sparse links suffice for light that is dim against the first bounce: noise of a step is in proportion to
   // what it moves.
   int Thinning() const {
-    if (!s_.options.accelerate || s_.history.empty()) return 1;
+    if (!s_.options.accelerate || !s_.options.thin_late_links || s_.history.empty()) return 1;
     const double dim = s_.residual() / s_.history.front().residual;
     return dim > 0.3 ? 1 : dim > 0.1 ? 2 : dim > 0.03 ? 4 : 8;
   }
@@ -626,11 +626,8 @@ Solution Solve(Scene scene, const SolveOptions& options, const SolveControl& con
 
 Solution Resume(Solution state, const SolveControl& control) {
   if (const std::string wrong = state.options.Validate(); !wrong.empty()) throw std::invalid_argument(wrong);
-  // Nothing was worth keeping: emission is a step like any other, done or not.
-  if (state.history.empty()) {
-    // The scene is cut along its contacts already.
-    return ProgressiveSolver(std::move(state.scene), state.options, control).Run();
-  }
+  // Nothing was worth keeping but the scene, which is cut along its contacts already.
+  if (state.history.empty()) return ProgressiveSolver(std::move(state.scene), state.options, control).Run();
   return ProgressiveSolver(std::move(state), control).Continue();
 }
 

@@ -53,6 +53,48 @@ bool Same(const RayHit& a, const RayHit& b) {
   return a.face == b.face && a.t == b.t && a.u == b.u && a.v == b.v && a.side == b.side;
 }
 
+// Which face is reported where two meet at one t is free; all else is as for one ray alone.
+TEST(RayTracerTest, FansHitWhatSingleRaysHitButForTies) {
+  Random random;
+  const Scene room = RoomWithThings(), soup = Soup(300, &random);
+  for (const Scene* scene : {&room, &soup}) {
+    const RayTracer tracer(*scene);
+    int hits = 0, ties = 0, misses = 0;
+    for (const int count : {1, 7, 16, 17, 512}) {
+      for (int fan = 0; fan < 20; ++fan) {
+        const Vec3 origin(random.Uniform() - 0.5f, 1.4f + random.Uniform(), random.Uniform() - 0.5f);
+        std::vector<float> x(count), y(count), z(count);
+        for (int i = 0; i < count; ++i) {
+          const Vec3 d = random.Direction();
+          x[i] = d.x();
+          y[i] = d.y();
+          z[i] = d.z();
+        }
+        std::vector<RayHit> fanned(count);
+        tracer.IntersectFan(origin, x.data(), y.data(), z.data(), fanned);
+        for (int i = 0; i < count; ++i) {
+          const RayHit single = tracer.Intersect({origin, 0, {x[i], y[i], z[i]}, kFar});
+          ASSERT_EQ(fanned[i].hit(), single.hit());
+          if (!single.hit()) {
+            ++misses;
+          } else if (fanned[i].face == single.face) {
+            ++hits;
+            EXPECT_TRUE(Same(fanned[i], single));
+          } else {
+            ++ties;
+            EXPECT_NEAR(fanned[i].t, single.t, 1e-6f * single.t);
+          }
+        }
+      }
+    }
+    EXPECT_GT(hits, 5000);
+    EXPECT_LT(ties, hits / 1000);
+    if (scene == &room) {
+      EXPECT_EQ(misses, 0);
+    }
+  }
+}
+
 TEST(RayTracerTest, AgreesWithBruteForce) {
   Random random;
   const Scene scene = Soup(60, &random);
