@@ -29,6 +29,7 @@ std::string Number(float value) {
 const std::map<std::string, Value>& Settings() {
   static const std::map<std::string, Value> settings = {
       {"--edge", [](const SolveOptions& o) { return Number(o.mesh.max_edge); }},
+      {"--contact-distance", [](const SolveOptions& o) { return Number(o.contact_distance); }},
       {"--lmax", [](const SolveOptions& o) { return std::to_string(o.lobes.l_max); }},
       {"--lobe-error", [](const SolveOptions& o) { return Number(100 * o.lobes.error); }},
       {"--force-lmax",

@@ -17,7 +17,7 @@ namespace {
 constexpr double kProgram = 20e6;  // an almost empty scene
 constexpr double kPerFace = 250;   // with Embree's tree, which is the most of it
 constexpr double kPerVertex = 24;
-constexpr double kPerNode = 52 + 8 + 1 + 4 + sizeof(Received);  // Mesh; area, hidden, list; what it got
+constexpr double kPerNode = 52 + 8 + 1 + 4 + 24 + sizeof(Received);  // Mesh; area, hidden, list; of a step
 constexpr double kPerElement = 16 + 2 * sizeof(Mesh::Cell);  // a tree has about twice as many cells as leaves
 constexpr double kLocatorPerElement = 2 * 20 + 28;           // while links are traced
 constexpr double kCuttingPerElement = 200;                   // OpenMesh's halfedges and the queue of edges

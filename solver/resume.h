@@ -16,7 +16,7 @@ void RequireMemoryToContinue(double bytes, const Solution& state,
                              const std::vector<MaterialLobes>& materials);
 
 /// What tells two scenes apart, as far as light and Lobe's files go: "the scene has 12 faces, the solution
-/// 14"; empty if nothing does. Cameras and names do not count.
+/// 14"; empty if nothing does. Cameras and names do not count. `scene` is cut along contacts as `solved` was.
 std::string DifferenceOfScenes(const Scene& scene, const Scene& solved);
 
 }  // namespace lobe

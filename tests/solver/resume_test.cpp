@@ -286,6 +286,7 @@ TEST(ResumeTest, WhatCannotGoOnIsRefusedInASentence) {
 TEST(ResumeTest, DifferencesOfScenesAreNamed) {
   const Scene scene = RoomOfEverything(true);
   SolveOptions o = Coarse(Transport::kLinks);
+  o.contact_distance = 0;
   o.max_seconds = 1e-9;
   const Scene solved = ThroughAFile(Solve(scene, o)).scene;
   EXPECT_EQ(DifferenceOfScenes(scene, solved), "");
