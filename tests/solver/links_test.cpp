@@ -248,12 +248,6 @@ TEST(LinksTest, StopWhenToldAndSaySo) {
   EXPECT_GE(asked, 1);
 }
 
-TEST(LinksTest, TheEstimateOfBytesIsWhatIsUsedWithoutMirrors) {
-  const Linked room(RoomWithASunkenBox(), 0.5f);
-  const Links::Options options{.links = 100};
-  EXPECT_EQ(Links::EstimateBytes(room.mesh, room.materials, options), room.Trace(options).bytes());
-}
-
 TEST(PackDirectionTest, IsOffByAtMostHalfAStepOfTheOctahedron) {
   std::mt19937 bits(8);
   std::normal_distribution<float> normal;
