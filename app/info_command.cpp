@@ -30,9 +30,14 @@ std::string SettingsText(const SolveOptions& o) {
   std::string text = "  edge " + Short(o.mesh.max_edge) + " m, lmax " + std::to_string(o.lobes.l_max);
   text += o.lobes.force_l_max >= 0 ? ", degree forced to " + std::to_string(o.lobes.force_l_max)
                                    : ", lobe error " + Short(100 * o.lobes.error) + " %";
-  return text + ", light samples " + std::to_string(o.light_samples) + ", delta areas " +
-         std::to_string(o.delta_areas) + ",\n  residual " + Short(o.residual) + ", step fraction " +
-         Short(o.step_fraction) + ", seed " + std::to_string(o.seed) + "\n";
+  text += ", refine error " + Short(100 * o.refine.error) + " %,\n  contact distance " +
+          Short(o.contact_distance) + " m, light samples " + std::to_string(o.light_samples) +
+          ", transport " + Name(o.transport);
+  // Each transport has knobs of its own.
+  text += o.transport == Transport::kShooting
+              ? ", delta areas " + std::to_string(o.delta_areas) + ", step fraction " + Short(o.step_fraction)
+              : ", links " + std::to_string(o.links) + (o.accelerate ? "" : ", plain sweeps");
+  return text + ",\n  residual " + Short(o.residual) + ", seed " + std::to_string(o.seed) + "\n";
 }
 
 std::string HistoryText(const std::vector<StepRecord>& history) {

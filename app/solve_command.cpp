@@ -317,7 +317,7 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->capture_default_str();
   solve
       ->add_option("--delta-areas", o.delta_areas,
-                   "Delta areas (one shadow ray each) per node and step of reflected light")
+                   "With --transport shooting: delta areas (one shadow ray each) per node and step")
       ->type_name("N")
       ->capture_default_str();
   solve
@@ -327,7 +327,7 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->capture_default_str();
   solve
       ->add_option("--step-fraction", o.step_fraction,
-                   "Share of the unshot power that a step shoots, above 0 to 1")
+                   "With --transport shooting: share of the unshot power that a step shoots, above 0 to 1")
       ->type_name("F")
       ->capture_default_str();
   solve->add_option("--max-steps", o.max_steps, "Stop after so many steps of reflected light")

@@ -1,5 +1,5 @@
-// Prints the solver's figures of docs/validation.md as Markdown: solver_figures TOPIC. Topics are listed without
-// one. Run from the project's root.
+// Prints the solver's figures of docs/validation.md as Markdown: solver_figures TOPIC. Topics are listed
+// without one. Run from the project's root.
 
 #include <sys/resource.h>
 
@@ -188,14 +188,16 @@ void LightSamples() {
              {kBoxes[0]});
 }
 void DeltaAreas() {
-  Sweep<int>("delta areas", {32, 64, 128, 256, 512, 1024}, [](SolveOptions& o, int v) {
+  Sweep<int>("delta areas", {32, 64, 128, 256, 512, 1024},
+             [](SolveOptions& o, int v) {
                o.transport = Transport::kShooting;
                o.delta_areas = v;
              },
              {kBoxes[0], kBoxes[1]});
 }
 void Portions() {
-  Sweep<double>("step fraction", {1, 0.9, 0.5, 0.25}, [](SolveOptions& o, double v) {
+  Sweep<double>("step fraction", {1, 0.9, 0.5, 0.25},
+                [](SolveOptions& o, double v) {
                   o.transport = Transport::kShooting;
                   o.step_fraction = v;
                 },
@@ -242,7 +244,6 @@ void Residual() {
                 {kBoxes[0]});
 }
 
-
 // Uniform meshes against refined ones, shooting against links.
 void TransportFigures() {
   Header("transport, mesh");
@@ -257,8 +258,8 @@ void TransportFigures() {
           o.mesh.max_edge = edge;
           if (!refined) o.refine.error = 0;
           char label[64];
-          std::snprintf(label, sizeof label, "%s, %s %g m", Name(transport), refined ? "refined from" : "uniform",
-                        double(edge));
+          std::snprintf(label, sizeof label, "%s, %s %g m", Name(transport),
+                        refined ? "refined from" : "uniform", double(edge));
           Row(label, scene, o);
         }
       }
@@ -280,16 +281,17 @@ void LinkCounts() {
 }
 
 void RefineErrors() {
-  Sweep<double>("refine error", {0, 0.3, 0.2, 0.1, 0.05, 0.02}, [](SolveOptions& o, double v) { o.refine.error = v; },
-                {kScenes[0], kScenes[1], kScenes[2]});
+  Sweep<double>("refine error", {0, 0.3, 0.2, 0.1, 0.05, 0.02},
+                [](SolveOptions& o, double v) { o.refine.error = v; }, {kScenes[0], kScenes[1], kScenes[2]});
   Sweep<int>("refine rounds", {2, 4, 6, 8}, [](SolveOptions& o, int v) { o.refine.rounds = v; },
              {kScenes[0], kScenes[1], kScenes[2]});
 }
 
 // One scene, its 38 triangles cut ever finer.
 void Growth() {
-  std::printf("| scene | nodes | links | solve, CPU s | exponent | peak memory so far, MB | bytes of lobes a node |\n"
-              "|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| scene | nodes | links | solve, CPU s | exponent | peak memory so far, MB | bytes of lobes a node |\n"
+      "|---|---|---|---|---|---|---|\n");
   for (const char* scene : kBoxes) {
     double nodes_before = 0, cpu_before = 0;
     for (const float edge : {0.95f, 0.3f, 0.095f, 0.03f}) {
@@ -301,13 +303,15 @@ void Growth() {
       rusage usage;
       getrusage(RUSAGE_SELF, &usage);
       const double nodes = double(t.solution.mesh.node_count());
-      std::printf("| %s | %.0f | %.1f M | %.2f |", scene, nodes, 1e-6 * double(t.solution.history.back().rays), t.cpu);
+      std::printf("| %s | %.0f | %.1f M | %.2f |", scene, nodes,
+                  1e-6 * double(t.solution.history.back().rays), t.cpu);
       if (nodes_before > 0) {
         std::printf(" %.2f |", std::log(t.cpu / cpu_before) / std::log(nodes / nodes_before));
       } else {
         std::printf(" |");
       }
-      std::printf(" %.0f | %.0f |\n", double(usage.ru_maxrss) / 1024, double(t.solution.total.bytes()) / nodes);
+      std::printf(" %.0f | %.0f |\n", double(usage.ru_maxrss) / 1024,
+                  double(t.solution.total.bytes()) / nodes);
       std::fflush(stdout);
       nodes_before = nodes;
       cpu_before = t.cpu;
@@ -335,22 +339,21 @@ void Threads() {
   }
 }
 
-const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {
-    {"furnaces", Furnaces},
-    {"form-factors", FormFactors},
-    {"cornell", Cornell},
-    {"transport", TransportFigures},
-    {"links", LinkCounts},
-    {"refine", RefineErrors},
-    {"growth", Growth},
-    {"threads", Threads},
-    {"light-samples", LightSamples},
-    {"delta-areas", DeltaAreas},
-    {"step-fraction", Portions},
-    {"border", Border},
-    {"contacts", Contacts},
-    {"lobe-error", LobeError},
-    {"residual", Residual}};
+const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"furnaces", Furnaces},
+                                                                            {"form-factors", FormFactors},
+                                                                            {"cornell", Cornell},
+                                                                            {"transport", TransportFigures},
+                                                                            {"links", LinkCounts},
+                                                                            {"refine", RefineErrors},
+                                                                            {"growth", Growth},
+                                                                            {"threads", Threads},
+                                                                            {"light-samples", LightSamples},
+                                                                            {"delta-areas", DeltaAreas},
+                                                                            {"step-fraction", Portions},
+                                                                            {"border", Border},
+                                                                            {"contacts", Contacts},
+                                                                            {"lobe-error", LobeError},
+                                                                            {"residual", Residual}};
 
 }  // namespace
 }  // namespace lobe

@@ -236,8 +236,7 @@ class Bisector {
 }  // namespace
 
 Bisection BisectLongEdges(const std::vector<std::array<uint32_t, 3>>& triangles, std::vector<Vec3> positions,
-                          std::vector<Vec3> normals, float max_edge,
-                          const std::function<void()>& poll) {
+                          std::vector<Vec3> normals, float max_edge, const std::function<void()>& poll) {
   Bisector bisector(std::move(positions), std::move(normals), max_edge);
   for (const auto& triangle : triangles) bisector.Add(triangle);
   return bisector.Run(poll);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Core>
 #include <tbb/parallel_for.h>
+#include <Eigen/Core>
 
 namespace lobe {
 namespace {
@@ -60,7 +60,7 @@ ElementLocator::ElementLocator(const Mesh& mesh)
       open.push_back({cell.child + 1, depth + 1, {a, 2 * b, -side}});
       open.push_back({cell.child, depth + 1, {a, side, 2 * c}});
     }
-    depths_[root] = uint8_t(std::min(deepest, 255));
+    depths_[root] = uint32_t(deepest);
   });
 }
 
@@ -74,7 +74,7 @@ void ElementLocator::Locate(std::span<const RayHit> hits, std::span<Mesh::Locati
       const RayHit& hit = hits[begin + i];
       const size_t root = 2 * size_t{hit.face} + size_t(hit.side);
       at[i] = hit.hit() ? roots_[root] : uint32_t(splits_.size() - 1);
-      depth = std::max<int>(depth, hit.hit() ? depths_[root] : 0);
+      depth = std::max(depth, hit.hit() ? int(depths_[root]) : 0);
       u[i] = hit.u;
       v[i] = hit.v;
     }

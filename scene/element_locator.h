@@ -35,8 +35,8 @@ class ElementLocator {
     std::array<float, 3> w0, w1;  ///< weights of the first two nodes: factors of u, v and a constant
     uint32_t element;
   };
-  std::vector<uint32_t> roots_;  // as Mesh::roots; where a side has no nodes, a leaf without element
-  std::vector<uint8_t> depths_;  // of the roots' trees
+  std::vector<uint32_t> roots_;   // as Mesh::roots; where a side has no nodes, a leaf without element
+  std::vector<uint32_t> depths_;  // of the roots' trees
   std::vector<Split> splits_;
   std::vector<uint32_t> leaf_of_cell_;
   std::vector<Leaf> leaves_;

@@ -23,7 +23,8 @@ class GlbWriter {
   int AddUints(std::span<const uint32_t> values, Target target);
   int AddBytes(std::span<const uint8_t> values);
 
-  /// Takes memory for so many bytes of accessors at once; growing into it piece by piece would take twice as much.
+  /// Takes memory for so many bytes of accessors at once; growing into it piece by piece would take twice as
+  /// much.
   void Reserve(size_t bytes) { buffer_.reserve(bytes); }
 
   /// Writes to a temporary name beside `path`, flushes to disk, renames: `path` is absent, what it was,

@@ -3,7 +3,7 @@
 namespace lobe {
 
 HitPoint FindHitPoint(const Scene& scene, const Mesh& mesh, const Ray& ray, const RayHit& hit,
-                              const Mesh::Location& where) {
+                      const Mesh::Location& where) {
   HitPoint out;
   out.position = ray.origin + ray.direction * hit.t;
   out.geometric_normal = scene.GeometricNormal(scene.faces[hit.face]);

@@ -15,7 +15,7 @@ struct HitPoint {
 
 /// `where`: mesh.Locate of the hit. Without nodes there the geometric normal is all there is.
 HitPoint FindHitPoint(const Scene& scene, const Mesh& mesh, const Ray& ray, const RayHit& hit,
-                              const Mesh::Location& where);
+                      const Mesh::Location& where);
 
 /// Mirror image of the unit direction `wo` (away from the surface) about the shading normal, unit. What would
 /// point into the surface, which an interpolated normal can do, is lifted just above it.

@@ -137,8 +137,8 @@ Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, con
     contact.push_back(face.contact);
   }
   *wide = PartAtContacts(contact, &welder, &triangles);
-  Bisection bisection =
-      BisectLongEdges(triangles, welder.positions(), welder.normals(), options.max_edge * (1 + kEdgeSlack), poll);
+  Bisection bisection = BisectLongEdges(triangles, welder.positions(), welder.normals(),
+                                        options.max_edge * (1 + kEdgeSlack), poll);
   if (group.front().side == Side::kBack) Flip(&bisection);
   return bisection;
 }

@@ -45,8 +45,8 @@ LOBE_SIMD_CLONES void ReadPacked(int l_max, const float* recurrence, const float
     for (int j = Steps(l_max, m0); --j > 0;) {
       recurrence += 3 * kLanes;
       packed += 6 * kLanes;
-      const Lanes next = (load(recurrence) * z2 + load(recurrence + kLanes)) * q -
-                         load(recurrence + 2 * kLanes) * before;
+      const Lanes next =
+          (load(recurrence) * z2 + load(recurrence + kLanes)) * q - load(recurrence + 2 * kLanes) * before;
       before = q;
       q = next;
       red_cos += q * load(packed);

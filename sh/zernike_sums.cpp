@@ -39,7 +39,7 @@ LOBE_SIMD_CLONES void AddLanes(int l_max, int planes, const double* a, const dou
         p[i] = next;
       }
     }
-    ++a, ++b, ++c;  // the last step of each order is not taken
+    ++a, ++b, ++c;                        // the last step of each order is not taken
     const double twice = m == 0 ? 1 : 2;  // w_1 = x
     for (int i = 0; i < kLanes; ++i) {
       const double next = twice * x[i] * wave[i] - rho2[i] * wave_before[i];

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/LU>
 #include <tbb/parallel_for.h>
+#include <Eigen/LU>
 
 namespace lobe {
 namespace {
@@ -55,6 +55,7 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
   // A sheet's other side, where both are clusters of their own.
   for (size_t p = 0; p < patches && !opposite.empty(); ++p) {
     const MaterialLobes& material = materials[mesh.patches[p].material];
+    if (mesh.patches[p].node_begin == mesh.patches[p].node_end) continue;
     const uint32_t other = opposite[mesh.patches[p].node_begin];
     if (!material.transmits() || other == kNone) continue;
     const int k = int(cluster_[p]), from = int(cluster_[mesh.node_patch[other]]);
@@ -74,29 +75,35 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
       blocks.push_back({p, n, std::min(n + kBlockOfNodes, mesh.patches[p].node_end)});
     }
   }
-  std::vector<Eigen::VectorXd> rows(blocks.size());
-  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t b) {
-    Eigen::VectorXd& row = rows[b] = Eigen::VectorXd::Zero(clusters_);
-    for (uint32_t n = blocks[b].begin; n < blocks[b].end; ++n) {
-      const auto targets = links.of(n);
-      const double weight = node_area[n] / double(targets.size());
-      for (const uint32_t link : targets) {
-        if (Links::IsNode(link)) {
-          row[cluster_[mesh.node_patch[link]]] += weight;
-        } else if (Links::IsChain(link)) {
-          for (const Links::Hop* hop = links.chain(link);; ++hop) {
-            if (Links::IsNode(hop->node)) {
-              row[cluster_[mesh.node_patch[hop->node]]] +=
-                  weight * (hop->fresnel[0] + hop->fresnel[1] + hop->fresnel[2]) / (3 * 65535.0);
+  form_factor_ = Eigen::MatrixXd::Zero(clusters_, clusters_);
+  // Rows of 2 KB: a batch at a time, since there may be a block for every small patch.
+  constexpr size_t kBatch = 1024;
+  std::vector<Eigen::VectorXd> rows(kBatch);
+  for (size_t begin = 0; begin < blocks.size(); begin += kBatch) {
+    const size_t end = std::min(blocks.size(), begin + kBatch);
+    tbb::parallel_for(begin, end, [&](size_t b) {
+      Eigen::VectorXd& row = rows[b - begin] = Eigen::VectorXd::Zero(clusters_);
+      for (uint32_t n = blocks[b].begin; n < blocks[b].end; ++n) {
+        const auto targets = links.of(n);
+        const double weight = node_area[n] / double(targets.size());
+        for (const uint32_t link : targets) {
+          if (Links::IsNode(link)) {
+            row[cluster_[mesh.node_patch[link]]] += weight;
+          } else if (Links::IsChain(link)) {
+            for (const Links::Hop* hop = links.chain(link);; ++hop) {
+              if (Links::IsNode(hop->node)) {
+                row[cluster_[mesh.node_patch[hop->node]]] +=
+                    weight * (hop->fresnel[0] + hop->fresnel[1] + hop->fresnel[2]) / (3 * 65535.0);
+              }
+              if (hop->last) break;
             }
-            if (hop->last) break;
           }
         }
       }
-    }
-  });
-  form_factor_ = Eigen::MatrixXd::Zero(clusters_, clusters_);
-  for (size_t b = 0; b < blocks.size(); ++b) form_factor_.row(cluster_[blocks[b].patch]) += rows[b].transpose();
+    });
+    for (size_t b = begin; b < end; ++b)
+      form_factor_.row(cluster_[blocks[b].patch]) += rows[b - begin].transpose();
+  }
   for (int k = 0; k < clusters_; ++k) form_factor_.row(k) /= std::max(area_[k], 1e-30);
 }
 

@@ -17,6 +17,7 @@
 #include "scene/input_error.h"
 #include "scene/mirror.h"
 #include "solver/hash.h"
+#include "solver/links.h"
 
 namespace lobe {
 namespace {
@@ -247,13 +248,12 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
 
 EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
                               const std::vector<const MaterialLobes*>& mirrors, uint64_t seed) {
-  constexpr int kProbes = 1 << 14, kMaxMirrors = 16;
+  constexpr int kProbes = 1 << 14;
   const auto emitters = FindEmitters(scene);
   const EmitterChoice choice(emitters);
   struct Fate {
     size_t emitter;
     Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero();
-    int rays = 0;
   };
   std::vector<Fate> fates(kProbes);
   tbb::parallel_for(0, kProbes, [&](int i) {
@@ -261,11 +261,11 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
     RandomStream random(Mix(Mix(seed, 0xe317), i));
     const Emitter& e = emitters[fate.emitter = choice.At((i + random.Next()) / kProbes)];
     const Vec3 w = Frame(e.normal).ToWorld(CosineDirection(random.Next(), random.Next()));
-    Ray ray = RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.epsilon());
+    Ray ray =
+        RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.epsilon());
     Rgb throughput = Rgb::Constant(1);
-    for (int mirror = 0; mirror <= kMaxMirrors; ++mirror) {
+    for (int mirror = 0; mirror <= Links::kMaxMirrors; ++mirror) {
       const RayHit hit = tracer.Intersect(ray);
-      ++fate.rays;
       if (!hit.hit()) {
         fate.escaped = throughput;
         return;
@@ -281,6 +281,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
       throughput *= lobes->MirrorAlbedo(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
       ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at), tracer.epsilon());
     }
+    fate.blocked = throughput;
   });
   // Every probe carries the same power, in the colours of its emitter.
   EmissionLoss out;
@@ -291,7 +292,6 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
     all += share.cast<double>();
     out.escaped += (share * fate.escaped).cast<double>();
     out.blocked += (share * fate.blocked).cast<double>();
-    out.rays += fate.rays;
   }
   out.escaped = (all > 0).select(out.escaped / all, 0.0);
   out.blocked = (all > 0).select(out.blocked / all, 0.0);

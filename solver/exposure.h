@@ -16,7 +16,8 @@ namespace lobe {
 /// in rounds until a round reaches nothing new, per connected piece of a surface; then by rays aimed at what
 /// walks have not met. Walks go on through what transmits, and of that both sides are lit if either is.
 /// A side that no light meets gets no nodes and costs nothing (inside a closed box, say).
-/// Throws InputError if nothing emits. `poll` is called from time to time, by any thread, and may throw to end it.
+/// Throws InputError if nothing emits. `poll` is called from time to time, by any thread, and may throw to
+/// end it.
 std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint64_t seed,
                                const std::function<void()>& poll = {});
 
@@ -24,7 +25,6 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
 /// `mirrors` (per material: an ideal mirror that light goes on from) what is lost behind mirrors counts too.
 struct EmissionLoss {
   Eigen::Array3d escaped = Eigen::Array3d::Zero(), blocked = Eigen::Array3d::Zero();
-  uint64_t rays = 0;
 };
 EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
                               const std::vector<const MaterialLobes*>& mirrors, uint64_t seed);

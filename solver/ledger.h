@@ -23,8 +23,8 @@ struct Ledger {
   Power escaped{};    ///< sent along rays that leave the scene
   Power blocked{};    ///< sent to black backs, to sides without nodes, and beyond Links::kMaxMirrors mirrors
   Power unshot{};     ///< still waiting at the end
-  /// Delivered minus (sent + passed_on - escaped - blocked): point collocation does not conserve power. Tends to 0
-  /// as the mesh is refined.
+  /// Delivered minus (sent + passed_on - escaped - blocked): point collocation does not conserve power. Tends
+  /// to 0 as the mesh is refined.
   Power imbalance{};
 
   double Closure() const;  ///< |emitted + imbalance - ...| / emitted, luminance-free sum of channels

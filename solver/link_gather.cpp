@@ -29,7 +29,8 @@ LinkField::LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobe
     packed_begin_.push_back(packed);
     if (d.diffuse()) continue;
     reader_of_patch_.back() = &readers_.try_emplace(d.max_degree(), d.max_degree()).first->second;
-    packed += reader_of_patch_.back()->packed_size() * (mesh.patches[p].node_end - mesh.patches[p].node_begin);
+    packed +=
+        reader_of_patch_.back()->packed_size() * (mesh.patches[p].node_end - mesh.patches[p].node_begin);
   }
   packed_.resize(packed, 0.0f);
   const float scale = 1.0f / std::sqrt(2.0f * kPi);
@@ -57,8 +58,8 @@ size_t LinkField::PackedAt(uint32_t node) const {
 
 Rgb LinkField::Read(uint32_t node, const Vec3& wo_world) const {
   const Vec3 wo = BendToHorizon(Frame(mesh_.node_normal[node]).ToLocal(wo_world));
-  const auto rgb = reader_of_patch_[mesh_.node_patch[node]]->Read(packed_.data() + PackedAt(node), wo.x(),
-                                                                  wo.y(), wo.z());
+  const auto rgb =
+      reader_of_patch_[mesh_.node_patch[node]]->Read(packed_.data() + PackedAt(node), wo.x(), wo.y(), wo.z());
   return {rgb[0], rgb[1], rgb[2]};
 }
 
@@ -76,8 +77,8 @@ LinkDirections& LinkReceiver::Directions(const LinkPattern& pattern) {
   return directions_.emplace_back(pattern);
 }
 
-void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ring_links, int ring,
-                            int first, int thinning, const LinkDirections& directions, const Frame& frame,
+void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ring_links, int ring, int first,
+                            int thinning, const LinkDirections& directions, const Frame& frame,
                             Received& work) {
   const int count = int(ring_links.size()) / thinning;
   float *red = ring_.data(), *green = red + count, *blue = green + count;

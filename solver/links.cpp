@@ -40,7 +40,9 @@ uint32_t PackDirection(const Vec3& direction) {
     x = std::copysign(1 - std::abs(d.y()), d.x());
     y = std::copysign(1 - std::abs(d.x()), d.y());
   }
-  const auto quantize = [](float v) { return uint32_t(std::lround((std::clamp(v, -1.0f, 1.0f) + 1) * 32767.5f)); };
+  const auto quantize = [](float v) {
+    return uint32_t(std::lround((std::clamp(v, -1.0f, 1.0f) + 1) * 32767.5f));
+  };
   return quantize(x) | quantize(y) << 16;
 }
 
@@ -88,9 +90,9 @@ struct Links::Tracing {
   }
 
   bool ShotByMirror(uint32_t patch, const Face& emitter) const {
-    return std::any_of(options.planar_mirrors.begin(), options.planar_mirrors.end(), [&](const PlanarMirror& m) {
-      return m.patch == patch && scene.Area(emitter) < m.largest_emitter;
-    });
+    return std::any_of(
+        options.planar_mirrors.begin(), options.planar_mirrors.end(),
+        [&](const PlanarMirror& m) { return m.patch == patch && scene.Area(emitter) < m.largest_emitter; });
   }
 
   void TraceNode(uint32_t node, const LinkPattern& pattern, Scratch& scratch, std::span<uint32_t> out,
@@ -208,8 +210,9 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
     const uint32_t end = uint32_t(std::min<size_t>(nodes, size_t(block + 1) * kBlockOfNodes));
     for (uint32_t node = block * kBlockOfNodes; node < end; ++node) {
       const Patch& p = patches_[node_patch_[node]];
-      const std::span<uint32_t> out{targets_.data() + p.begin + size_t(node - p.node_begin) * p.pattern.count(),
-                                    size_t(p.pattern.count())};
+      const std::span<uint32_t> out{
+          targets_.data() + p.begin + size_t(node - p.node_begin) * p.pattern.count(),
+          size_t(p.pattern.count())};
       tracing.TraceNode(node, p.pattern, scratch, out, hops[block]);
       const auto blocked = std::count(out.begin(), out.end(), kBlocked);
       hidden_[node] = 2 * size_t(blocked) > out.size();
@@ -226,7 +229,8 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
     hops_.insert(hops_.end(), hops[b].begin(), hops[b].end());
     hops[b] = {};
   }
-  if (hops_.size() >= (kBlocked & ~kChain)) throw std::length_error("more than 2^31 hops of links by mirrors");
+  if (hops_.size() >= (kBlocked & ~kChain))
+    throw std::length_error("more than 2^31 hops of links by mirrors");
   const auto resolve = [&](uint32_t& end) {
     if (!IsNode(end)) return;
     const auto& corners = mesh.elements[end / 6];

@@ -38,12 +38,12 @@ class Links {
   /// One surface on a link's way by mirrors. What arrives through the link is the sum over its hops of
   /// throughput x radiance of `node` towards `wo`.
   struct Hop {
-    uint32_t node;         ///< or kEscaped, kBlocked
-    uint32_t direction;    ///< packed wo, from this surface back along the way (UnpackDirection)
-    uint16_t fresnel[3];   ///< what the mirrors so far pass on, in 1 / 65535
-    uint16_t last : 1;     ///< ends the chain
-    uint16_t emission : 1; ///< the surface's own emission is read too: nothing else carries it here
-    uint16_t cut : 1;      ///< a mirror beyond kMaxMirrors: what it throws is lost
+    uint32_t node;          ///< or kEscaped, kBlocked
+    uint32_t direction;     ///< packed wo, from this surface back along the way (UnpackDirection)
+    uint16_t fresnel[3];    ///< what the mirrors so far pass on, in 1 / 65535
+    uint16_t last : 1;      ///< ends the chain
+    uint16_t emission : 1;  ///< the surface's own emission is read too: nothing else carries it here
+    uint16_t cut : 1;       ///< a mirror beyond kMaxMirrors: what it throws is lost
   };
   static_assert(sizeof(Hop) == 16);
 
@@ -59,7 +59,8 @@ class Links {
   static constexpr int kProbes = 64;
 
   struct Options {
-    int links = 512;  ///< per diffuse node; glossy ones take kPerCoefficient for each coefficient if that is more
+    int links =
+        1024;  ///< per diffuse node; glossy ones take kPerCoefficient for each coefficient if that is more
     bool follow_mirrors = true;
     uint64_t seed = 1;
     /// By way of these shooting brings light of small emitters: links leave that out.
@@ -107,9 +108,9 @@ class Links {
   uint64_t rays_ = 0;
 };
 
-/// Unit vector in 32 bits, octahedral (Cigolle et al., JCGT 3(2), 2014): off by at most 6.5e-5 radians, in the
-/// middle of an octant: half a step in x and in y moves a point of the face by sqrt(3/2) steps of 1 / 32767.5,
-/// and the sphere is sqrt(3) times as far.
+/// Unit vector in 32 bits, octahedral (Cigolle et al., JCGT 3(2), 2014): off by at most 6.5e-5 radians, in
+/// the middle of an octant: half a step in x and in y moves a point of the face by sqrt(3/2) steps of 1 /
+/// 32767.5, and the sphere is sqrt(3) times as far.
 uint32_t PackDirection(const Vec3& direction);
 Vec3 UnpackDirection(uint32_t packed);
 

@@ -33,7 +33,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
           const Rgb throughput =
               Rgb(float(hop->fresnel[0]), float(hop->fresnel[1]), float(hop->fresnel[2])) / 65535.0f;
           if (hop->node == Links::kEscaped) escaped += throughput;
-          if (hop->node == Links::kBlocked || hop->cut) blocked += throughput;
+          if (hop->last && (hop->node == Links::kBlocked || hop->cut)) blocked += throughput;
           if (hop->last) break;
         }
         if ((escaped + blocked <= 0).all()) continue;

@@ -28,11 +28,16 @@ double Roughness::Norm(const uint32_t* nodes, const double* weights, int count) 
     for (int i = 0; i < count; ++i) flux += weights[i] * light_.Flux(nodes[i]).cast<double>();
     return std::sqrt((flux / std::numbers::pi).square().mean());
   }
-  const size_t floats = light_.all(nodes[0]).size();
-  for (size_t k = 0; k < floats; ++k) {
-    double value = 0;
-    for (int i = 0; i < count; ++i) value += weights[i] * light_.all(nodes[i])[k];
-    sum += value * value;
+  const int base = d.base_count(), gloss = d.gloss_count();
+  for (int c = 0; c < 3; ++c) {
+    for (int k = 0; k < std::max(base, gloss); ++k) {
+      double value = 0;
+      for (int i = 0; i < count; ++i) {
+        if (k < base) value += weights[i] * light_.base(nodes[i])[c * base + k];
+        if (k < gloss) value += weights[i] * light_.gloss(nodes[i])[c * gloss + k];
+      }
+      sum += value * value;
+    }
   }
   // Orthonormal over the hemisphere of 2 pi; three channels.
   return std::sqrt(sum / (3 * 2 * std::numbers::pi));
@@ -60,7 +65,8 @@ std::vector<float> Roughness::AtMidpoints(const Refinement& refined, double erro
   const double one = 1, bend[3] = {1, -0.5, -0.5};
   for (const uint32_t n : refined.made) {
     const uint32_t nodes[3] = {n, refined.parents[n][0], refined.parents[n][1]};
-    if (nodes[1] == nodes[2] || area_[nodes[0]] == 0 || area_[nodes[1]] == 0 || area_[nodes[2]] == 0) continue;
+    if (nodes[1] == nodes[2] || area_[nodes[0]] == 0 || area_[nodes[1]] == 0 || area_[nodes[2]] == 0)
+      continue;
     const double here = 0.5 * (Norm(&nodes[1], &one, 1) + Norm(&nodes[2], &one, 1));
     const double scale = 0.5 * (here + mean_);
     if (scale > 0) node_error[n] = float(Norm(nodes, bend, 3) / scale);

@@ -25,7 +25,8 @@ constexpr float kPerCoefficient = 8.0f;
 constexpr float kGlossyCaution = 4.0f;
 
 // An emitter whose edges are shorter than this times its distance is taken by points spread evenly over it,
-// without cutting: the kernel hardly varies. So many points for each threshold of light, as cutting would give.
+// without cutting: the kernel hardly varies. So many points for each threshold of light, as cutting would
+// give.
 constexpr float kSeenSmall = 0.7f;
 constexpr float kPerThreshold = 1.4f;
 
@@ -107,7 +108,11 @@ ShootingField::ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitt
       // Reflection turns the winding round.
       const Vec3 normal = e.normal - 2 * mirror.normal.dot(e.normal) * mirror.normal;
       roots_.push_back({{mirror.Image(e.corners[0]), mirror.Image(e.corners[2]), mirror.Image(e.corners[1])},
-                        normal, e.radiance, kNone, false, m});
+                        normal,
+                        e.radiance,
+                        kNone,
+                        false,
+                        m});
     }
   }
 }
@@ -270,10 +275,12 @@ bool Receiver::EmitEvenly(const ShootingField::Root& root, uint32_t node, int sa
     const Vec3 to = target - point;
     const float r2 = to.squaredNorm();
     const float kernel = to.dot(normal) * -to.dot(root.normal) / (r2 * r2);
+    if (!(kernel > 0)) continue;  // a corner beyond one of the horizons
     sum += kernel;
     rays_.push_back({from, 0.0f, target + root.normal * epsilon - from, 1.0f});
     deltas_.push_back({to / std::sqrt(r2), root.radiance * kernel, root.mirror});
   }
+  if (!(sum > 0)) return false;
   // Together they bring what the whole triangle brings.
   for (size_t i = first; i < deltas_.size(); ++i) deltas_[i].irradiance *= irradiance / sum;
   return true;

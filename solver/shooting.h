@@ -35,9 +35,9 @@ class ShootingField {
   struct Root {
     std::array<Vec3, 3> corners;
     Vec3 normal;
-    Rgb radiance;   ///< mean over the cell
-    uint32_t cell;  ///< kNone for an emitter
-    bool glossy;    ///< radiance depends on direction: read lobes
+    Rgb radiance;             ///< mean over the cell
+    uint32_t cell;            ///< kNone for an emitter
+    bool glossy;              ///< radiance depends on direction: read lobes
     uint32_t mirror = kNone;  ///< of a mirrored emitter: index into mirrors()
   };
   const std::vector<Root>& roots() const { return roots_; }

@@ -15,9 +15,9 @@ using nlohmann::json;
 
 constexpr size_t kIntMax = std::numeric_limits<int>::max();
 
-constexpr StopReason kStopReasons[] = {StopReason::kConverged, StopReason::kStepLimit, StopReason::kTimeLimit,
-                                       StopReason::kInterrupted, StopReason::kNotConverging,
-                                       StopReason::kUnfinished};
+constexpr StopReason kStopReasons[] = {StopReason::kConverged,     StopReason::kStepLimit,
+                                       StopReason::kTimeLimit,     StopReason::kInterrupted,
+                                       StopReason::kNotConverging, StopReason::kUnfinished};
 constexpr GlossKind kGlossKinds[] = {GlossKind::kNone, GlossKind::kLobe, GlossKind::kSharp,
                                      GlossKind::kMirror};
 

@@ -237,8 +237,8 @@ class ProgressiveSolver {
     for (int round = 0; round < options.rounds && options.error > 0; ++round) {
       const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
       const Roughness roughness(s_.mesh, gained_, area);
-      const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
-                                                     : roughness.AtMidpoints(refined, options.error);
+      const std::vector<float> priority =
+          round == 0 ? roughness.BetweenEnds(options.error) : roughness.AtMidpoints(refined, options.error);
       const size_t most_nodes = MostNodes();
       refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, most_nodes);
       if (refined.out_of_nodes && most_nodes < options.max_nodes) short_of_memory_ = true;
@@ -290,8 +290,8 @@ class ProgressiveSolver {
     phase_ = Phase::kLinks;
     double expected_rays = 0;
     for (const auto& p : s_.mesh.patches) {
-      expected_rays += double(p.node_end - p.node_begin) *
-                       Links::PatternOf(materials_[p.material], options.links).count();
+      expected_rays +=
+          double(p.node_end - p.node_begin) * Links::PatternOf(materials_[p.material], options.links).count();
     }
     links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [&](double fraction) {
       rays_under_way_ = uint64_t(fraction * expected_rays);
@@ -312,14 +312,14 @@ class ProgressiveSolver {
   // Light of the emitters by way of mirrors: over one planar mirror by shadow rays to their images, all else
   // by links.
   bool EmissionByMirrors() {
-    const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
-      return m.kind() == GlossKind::kMirror;
-    });
+    const bool mirrors = std::any_of(materials_.begin(), materials_.end(),
+                                     [](const MaterialLobes& m) { return m.kind() == GlossKind::kMirror; });
     phase_ = Phase::kMirrors;
     if (by_links_ && mirrors) {
       if (!planar_mirrors_.empty()) {
         const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
-        if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); })) return false;
+        if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); }))
+          return false;
       }
       if (!AddGathered([&] { return GatherLinked(0, LinkField(s_.scene, s_.mesh), 1); })) return false;
     }
@@ -416,7 +416,8 @@ class ProgressiveSolver {
       }
       std::vector<uint32_t> order(nodes);
       std::iota(order.begin(), order.end(), 0u);
-      std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return power[a] > power[b]; });
+      std::stable_sort(order.begin(), order.end(),
+                       [&](uint32_t a, uint32_t b) { return power[a] > power[b]; });
       for (const uint32_t n : order) {
         const auto shot = shooting_.all(n);
         if (covered >= s_.options.step_fraction * all) std::fill(shot.begin(), shot.end(), 0.0f);
@@ -445,9 +446,8 @@ class ProgressiveSolver {
   bool GatherLinked(int step, const LinkField& field, int thinning) {
     tbb::enumerable_thread_specific<LinkReceiver> receivers(
         [&] { return LinkReceiver(s_.mesh, *links_, materials_); });
-    return ForEach(AllNodes(), step, [&](uint32_t n, float* out) {
-      return receivers.local().Gather(n, field, thinning, out);
-    });
+    return ForEach(AllNodes(), step,
+                   [&](uint32_t n, float* out) { return receivers.local().Gather(n, field, thinning, out); });
   }
 
   // gather(node, out) for every one of `nodes` that is not hidden, into gained_ and got_; false if told
@@ -456,25 +456,26 @@ class ProgressiveSolver {
   bool ForEach(const std::vector<uint32_t>& nodes, int step, const Gather& gather) {
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
-      if (stop.load(std::memory_order_relaxed)) return;
-      if (MustStop()) {
-        stop = true;
-        return;
-      }
-      uint64_t rays = 0;
-      for (size_t i = range.begin(); i < range.end(); ++i) {
-        const uint32_t n = nodes[i];
-        auto out = gained_.all(n);
-        std::fill(out.begin(), out.end(), 0.0f);
-        got_[n] = {};
-        if (s_.hidden[n]) continue;
-        got_[n] = gather(n, out.data());
-        rays += got_[n].rays;
-      }
-      rays_under_way_ += rays;
-      Report(step, double(done += range.size()) / double(nodes.size()));
-    });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes.size(), 16),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        if (stop.load(std::memory_order_relaxed)) return;
+                        if (MustStop()) {
+                          stop = true;
+                          return;
+                        }
+                        uint64_t rays = 0;
+                        for (size_t i = range.begin(); i < range.end(); ++i) {
+                          const uint32_t n = nodes[i];
+                          auto out = gained_.all(n);
+                          std::fill(out.begin(), out.end(), 0.0f);
+                          got_[n] = {};
+                          if (s_.hidden[n]) continue;
+                          got_[n] = gather(n, out.data());
+                          rays += got_[n].rays;
+                        }
+                        rays_under_way_ += rays;
+                        Report(step, double(done += range.size()) / double(nodes.size()));
+                      });
     return !stop;
   }
 
@@ -538,7 +539,7 @@ class ProgressiveSolver {
   void PassThrough() {
     for (uint32_t n = 0; n < opposite_.size(); ++n) {
       const uint32_t from = opposite_[n];
-      if (from == kNone) continue;
+      if (from == kNone || s_.hidden[from]) continue;
       const int count = gained_.degrees(n).base_count();
       for (int c = 0; c < 3; ++c) {
         // Of radiance flux / pi, as the coefficient of the constant function 1 / sqrt(2 pi).
@@ -610,8 +611,8 @@ class ProgressiveSolver {
   Phase phase_ = Phase::kPreparation;
   bool short_of_memory_ = false;  // some of the mesh could not be refined
   uint64_t rays_ = 0, rays_before_ = 0;
-  std::atomic<uint64_t> rays_under_way_{0};  // traced, not yet committed
-  double seconds_before_ = 0;  // in the runs that this one continues
+  std::atomic<uint64_t> rays_under_way_{0};            // traced, not yet committed
+  double seconds_before_ = 0;                          // in the runs that this one continues
   double last_checkpoint_ = 0, checkpoint_pause_ = 0;  // seconds of this run
   std::mutex report_mutex_;
 };

@@ -13,7 +13,7 @@ enum class Phase {
   kPreparation,  ///< which sides light meets, tables of lobes, tessellation
   kEmission,     ///< straight light, and refinement of the mesh where it bends
   kLinks,
-  kMirrors,      ///< emitters' light by way of mirrors
+  kMirrors,  ///< emitters' light by way of mirrors
   kBounces,
 };
 
@@ -53,8 +53,8 @@ struct SolveControl {
   /// Bytes that the solve may take, 0: any. More is refused with InputError before it is taken; a mesh is
   /// refined only as far as it fits (a warning in the solution's scene).
   double max_memory = 0;
-  /// Told what the solve will need, before it is taken: when the first mesh is known, and again when it has been
-  /// refined.
+  /// Told what the solve will need, before it is taken: when the first mesh is known, and again when it has
+  /// been refined.
   std::function<void(const MemoryNeed&)> memory;
 };
 

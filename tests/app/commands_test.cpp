@@ -76,8 +76,8 @@ TEST_F(CommandsTest, SolveSpeaksOnStandardErrorOnly) {
 }
 
 TEST_F(CommandsTest, SolveWarnsOfLightThatMirrorsWouldThrow) {
-  const ProgramResult r =
-      RunLobe({"solve", ScenePath("furnace_glossy"), "-o", File("out.glb"), "--edge", "2", "--transport", "shooting"});
+  const ProgramResult r = RunLobe({"solve", ScenePath("furnace_glossy"), "-o", File("out.glb"), "--edge", "2",
+                                   "--transport", "shooting"});
   EXPECT_EQ(r.exit_code, 0);
   EXPECT_THAT(r.err, HasSubstr("fell on ideal mirrors"));
 }

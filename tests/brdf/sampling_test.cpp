@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "brdf/hemisphere_integral.h"
-#include "tests/support/outgoing_integral.h"
 #include "tests/support/brdf_laws.h"
 #include "tests/support/direction_chi_square.h"
+#include "tests/support/outgoing_integral.h"
 #include "tests/support/significance.h"
 
 namespace lobe {

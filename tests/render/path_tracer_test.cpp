@@ -137,9 +137,9 @@ TEST(PathTracerTest, EveryModelShowsItsAlbedoInAFurnace) {
       const auto& m = model;
       Rgb expected = (test::IntegrateOutgoing(width, plane.z(),
                                               [&](const Vec3d& wi) { return EvaluateGloss(m, wi, plane); }) +
-                      test::IntegrateOutgoing(1, plane.z(),
-                                              [&](const Vec3d& wi) { return EvaluateBase(m, wi, plane); }))
-                         .cast<float>();
+                      test::IntegrateOutgoing(1, plane.z(), [&](const Vec3d& wi) {
+                        return EvaluateBase(m, wi, plane);
+                      })).cast<float>();
       const auto* gltf = std::get_if<MetallicRoughness>(&model);
       if (gltf && gltf->roughness < kMirrorRoughness) expected += gltf->Fresnel(std::cos(theta));
       for (const auto way : {LightSampling::kBoth, LightSampling::kDirections}) {

@@ -41,8 +41,8 @@ TEST(TruthTest, GlossyCornellBoxIsWithinSixPercentAndBetterWhenFiner) {
   EXPECT_LT(fine, coarse);
 }
 
-// A closed room whose walls emit 1 and reflect half, with a glowing, a white and a mirror block and a translucent
-// sheet: every radiance anywhere is exactly 2, by any number of mirrors and through the sheet.
+// A closed room whose walls emit 1 and reflect half, with a glowing, a white and a mirror block and a
+// translucent sheet: every radiance anywhere is exactly 2, by any number of mirrors and through the sheet.
 TEST(TruthTest, EveryRadianceInTheGlossyFurnaceIsTwo) {
   const Solution solution = Solve(ReadGltfScene(LOBE_TEST_DATA "/scenes/furnace_glossy.glb"), {});
   const Renderer renderer(solution);

@@ -88,8 +88,7 @@ TEST(FindHitPointTest, FlatFacesHaveTheFacesNormalOnTheSideThatWasMet) {
     const Ray ray{target + 3 * away, 0, -2 * away, kFar};
     const RayHit hit = tracer.Intersect(ray);
     if (!hit.hit()) continue;
-    const HitPoint at =
-        FindHitPoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
+    const HitPoint at = FindHitPoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
     // Ends where it was aimed, but for what grazing adds.
     EXPECT_LT((at.position - target).norm(), 3e-6f / std::abs(away.dot(n)));
     ++met[int(hit.side)];
@@ -118,8 +117,7 @@ TEST(FindHitPointTest, CurvedPatchesHaveInterpolatedNormalsOnBothSides) {
     const Ray ray{from, 0, direction, kFar};
     const RayHit hit = tracer.Intersect(ray);
     ASSERT_TRUE(hit.hit());
-    const HitPoint at =
-        FindHitPoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
+    const HitPoint at = FindHitPoint(scene, mesh, ray, hit, mesh.Locate(hit.face, hit.side, hit.u, hit.v));
     const Vec3 radial = (at.position - centre).normalized() * (inside ? -1.0f : 1.0f);
     EXPECT_NEAR(at.normal.norm(), 1, 1e-6);
     // Linear interpolation between normals an angle h apart is off by at most h^2 / 8 in length and, since
