@@ -27,6 +27,10 @@ class Roughness {
  public:
   /// `light` on the nodes of `mesh`, `area` per node (0: leave the node out).
   Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area);
+  /// With the eye on contacts: only what is `near` them (NearContacts) counts, in proportion, and against the
+  /// brightness of the place alone: beside a contact it may be dark.
+  Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
+            const std::vector<float>& near);
 
   /// First guess, per element: the largest difference between ends of an edge, where above `error`.
   std::vector<float> BetweenEnds(double error) const;
@@ -37,10 +41,13 @@ class Roughness {
  private:
   // rms over directions and channels of sum_i weight_i L_i, nodes of one patch.
   double Norm(const uint32_t* nodes, const double* weights, int count) const;
+  // Of a difference on the edge between `ends`, over the brightness there.
+  double Relative(double difference, const uint32_t ends[2]) const;
 
   const Mesh& mesh_;
   const NodeLobes& light_;
   const std::vector<double>& area_;
+  const std::vector<float>* near_ = nullptr;
   double mean_ = 0;  // rms brightness of the scene
 };
 

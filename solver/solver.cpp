@@ -21,6 +21,7 @@
 #include "solver/link_gather.h"
 #include "solver/links.h"
 #include "solver/losses.h"
+#include "solver/near_contacts.h"
 #include "solver/planar_mirrors.h"
 #include "solver/refinement.h"
 #include "solver/shooting.h"
@@ -30,6 +31,13 @@ namespace {
 
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
+
+// Beside contacts light may be off by this fraction of RefineOptions::error;
+// docs/validation.md#contact-truth.
+const double kContactError = getenv("KE") ? atof(getenv("KE")) : 0.4;
+
+// Rounds of bisection there, on top of RefineOptions::rounds.
+const int kContactRounds = getenv("KR") ? atoi(getenv("KR")) : 2;
 
 // Shooting needs links only to see which nodes are hidden and where light is lost.
 constexpr int kProbes = 64;
@@ -111,33 +119,91 @@ class ProgressiveSolver {
       degrees.push_back({lobes.base.l_max, lobes.gloss.l_max});
     }
     gained_ = NodeLobes(s_.mesh, degrees);
-    const auto shoot = [&](const std::vector<uint32_t>& nodes) {
-      received_.assign(s_.mesh.node_count(), 0.0f);
-      s_.hidden.assign(s_.mesh.node_count(), 0);
-      got_.resize(s_.mesh.node_count());
-      return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
-    };
-    if (!shoot(AllNodes())) return false;
+    got_.clear();
+    std::vector<float> near = NearContacts(s_.scene, s_.mesh, s_.options.contact_distance);
+    if (!Shoot(AllNodes())) return false;
     const RefineOptions& options = s_.options.refine;
     Refinement refined;
     for (int round = 0; round < options.rounds && options.error > 0; ++round) {
       const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
       const Roughness roughness(s_.mesh, gained_, area);
-      const std::vector<float> priority = round == 0 ? roughness.BetweenEnds(options.error)
-                                                     : roughness.AtMidpoints(refined, options.error);
+      const std::vector<float> priority =
+          round == 0 ? roughness.BetweenEnds(options.error) : roughness.AtMidpoints(refined, options.error);
       refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
       if (refined.made.empty()) break;
-      gained_ = CarryOver(gained_, refined);
-      std::vector<Received> got(refined.mesh.node_count());
-      for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
-      got_ = std::move(got);
-      s_.mesh = std::move(refined.mesh);
-      if (!shoot(refined.made)) return false;
+      near = CarryOver(near, refined);
+      if (!MoveTo(refined)) return false;
     }
+    if (!RefineAtContacts(std::move(near))) return false;
     s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
     const auto transmits = [](const MaterialLobes& m) { return m.transmits(); };
     if (std::any_of(materials_.begin(), materials_.end(), transmits)) {
       opposite_ = OppositeNodes(s_.mesh, s_.scene);
+    }
+    return true;
+  }
+
+  // Straight light of the emitters at `nodes`.
+  bool Shoot(const std::vector<uint32_t>& nodes) {
+    received_.assign(s_.mesh.node_count(), 0.0f);
+    s_.hidden.assign(s_.mesh.node_count(), 0);
+    got_.resize(s_.mesh.node_count());
+    return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
+  }
+
+  // Takes over a refined mesh, with straight light on its new nodes.
+  bool MoveTo(Refinement& refined) {
+    gained_ = CarryOver(gained_, refined);
+    std::vector<Received> got(refined.mesh.node_count());
+    for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
+    got_ = std::move(got);
+    s_.mesh = std::move(refined.mesh);
+    return Shoot(refined.made);
+  }
+
+  // Beside contacts much of the light has been reflected before and changes fast, since what stands there is
+  // close: there the mesh is refined for light reflected once, too.
+  bool RefineAtContacts(std::vector<float> near) {
+    const RefineOptions& options = s_.options.refine;
+    if (!(options.error > 0) || options.rounds == 0) return true;
+    const double error = kContactError * options.error;
+    NodeLobes once = gained_;
+    once.SetZero();
+    std::vector<uint32_t> nodes = AllNodes();
+    Refinement refined;
+    for (int round = 0; round < options.rounds + kContactRounds; ++round) {
+      std::vector<bool> beside(s_.mesh.node_count(), false);  // on an element that is near
+      for (const auto& e : s_.mesh.elements) {
+        if (near[e[0]] > 0 || near[e[1]] > 0 || near[e[2]] > 0) beside[e[0]] = beside[e[1]] = beside[e[2]] = true;
+      }
+      std::erase_if(nodes, [&](uint32_t n) { return !beside[n]; });
+      if (nodes.empty()) return true;
+      NodeLobes light = gained_;
+      std::vector<Received> got = got_;
+      {
+        const ShootingField field(s_.scene, s_.mesh, s_.hidden, light);
+        gained_ = once;
+        if (!GatherShot(0, field, s_.options.delta_areas, nodes)) return false;
+        once = gained_;
+      }
+      gained_ = light;
+      got_ = std::move(got);
+      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+        const auto to = light.all(n);
+        const auto from = once.all(n);
+        for (size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+      }
+      const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
+      const Roughness roughness(s_.mesh, light, area, near);
+      const std::vector<float> priority =
+          round == 0 ? roughness.BetweenEnds(error) : roughness.AtMidpoints(refined, error);
+      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
+      if (getenv("KV")) fprintf(stderr, "contact round %d asked %zu made %zu\n", round, refined.asked, refined.made.size());
+      if (refined.made.empty()) return true;
+      near = CarryOver(near, refined);
+      once = CarryOver(once, refined);
+      nodes = refined.made;
+      if (!MoveTo(refined)) return false;
     }
     return true;
   }
@@ -156,10 +222,11 @@ class ProgressiveSolver {
     options.seed = s_.options.seed;
     if (by_links_) planar_mirrors_ = FindPlanarMirrors(s_.mesh, materials_, emitters_);
     options.planar_mirrors = planar_mirrors_;
-    links_ = std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
-      Report(0, fraction);
-      return MustStop();
-    });
+    links_ =
+        std::make_unique<Links>(s_.scene, s_.mesh, tracer_, materials_, options, [this](double fraction) {
+          Report(0, fraction);
+          return MustStop();
+        });
     if (links_->stopped()) return false;
     rays_ += links_->rays();
     s_.hidden = links_->hidden();
@@ -173,13 +240,13 @@ class ProgressiveSolver {
   // Light of the emitters by way of mirrors: over one planar mirror by shadow rays to their images, all else
   // by links.
   bool EmissionByMirrors() {
-    const bool mirrors = std::any_of(materials_.begin(), materials_.end(), [](const MaterialLobes& m) {
-      return m.kind() == GlossKind::kMirror;
-    });
+    const bool mirrors = std::any_of(materials_.begin(), materials_.end(),
+                                     [](const MaterialLobes& m) { return m.kind() == GlossKind::kMirror; });
     if (by_links_ && mirrors) {
       if (!planar_mirrors_.empty()) {
         const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
-        if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); })) return false;
+        if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); }))
+          return false;
       }
       if (!AddGathered([&] { return GatherLinked(0, LinkField(s_.scene, s_.mesh), 1); })) return false;
     }
@@ -250,7 +317,8 @@ class ProgressiveSolver {
       }
       std::vector<uint32_t> order(nodes);
       std::iota(order.begin(), order.end(), 0u);
-      std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return power[a] > power[b]; });
+      std::stable_sort(order.begin(), order.end(),
+                       [&](uint32_t a, uint32_t b) { return power[a] > power[b]; });
       for (const uint32_t n : order) {
         const auto shot = shooting_.all(n);
         if (covered >= s_.options.step_fraction * all) std::fill(shot.begin(), shot.end(), 0.0f);
@@ -279,9 +347,8 @@ class ProgressiveSolver {
   bool GatherLinked(int step, const LinkField& field, int thinning) {
     tbb::enumerable_thread_specific<LinkReceiver> receivers(
         [&] { return LinkReceiver(s_.mesh, *links_, materials_); });
-    return ForEach(AllNodes(), step, [&](uint32_t n, float* out) {
-      return receivers.local().Gather(n, field, thinning, out);
-    });
+    return ForEach(AllNodes(), step,
+                   [&](uint32_t n, float* out) { return receivers.local().Gather(n, field, thinning, out); });
   }
 
   // gather(node, out) for every one of `nodes` that is not hidden, into gained_ and got_; false if told
@@ -290,22 +357,23 @@ class ProgressiveSolver {
   bool ForEach(const std::vector<uint32_t>& nodes, int step, const Gather& gather) {
     std::atomic<size_t> done{0};
     std::atomic<bool> stop{false};
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
-      if (stop.load(std::memory_order_relaxed)) return;
-      if (MustStop()) {
-        stop = true;
-        return;
-      }
-      for (size_t i = range.begin(); i < range.end(); ++i) {
-        const uint32_t n = nodes[i];
-        auto out = gained_.all(n);
-        std::fill(out.begin(), out.end(), 0.0f);
-        got_[n] = {};
-        if (s_.hidden[n]) continue;
-        got_[n] = gather(n, out.data());
-      }
-      Report(step, double(done += range.size()) / double(nodes.size()));
-    });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, nodes.size(), 16),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                        if (stop.load(std::memory_order_relaxed)) return;
+                        if (MustStop()) {
+                          stop = true;
+                          return;
+                        }
+                        for (size_t i = range.begin(); i < range.end(); ++i) {
+                          const uint32_t n = nodes[i];
+                          auto out = gained_.all(n);
+                          std::fill(out.begin(), out.end(), 0.0f);
+                          got_[n] = {};
+                          if (s_.hidden[n]) continue;
+                          got_[n] = gather(n, out.data());
+                        }
+                        Report(step, double(done += range.size()) / double(nodes.size()));
+                      });
     return !stop;
   }
 
