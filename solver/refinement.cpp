@@ -35,7 +35,7 @@ double Roughness::Relative(double difference, const uint32_t ends[2]) const {
   const double one = 1;
   const double here = 0.5 * (Norm(&ends[0], &one, 1) + Norm(&ends[1], &one, 1));
   if (near_) {
-    const double near = 0.5 * ((*near_)[ends[0]] + (*near_)[ends[1]]);
+    const double near = std::min(1.0, double((*near_)[ends[0]]) + (*near_)[ends[1]]);
     const double scale = std::max(here, kDarkest * mean_);
     return scale > 0 ? near * difference / scale : 0;
   }

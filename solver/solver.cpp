@@ -32,12 +32,13 @@ namespace {
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
 
-// Beside contacts light may be off by this fraction of RefineOptions::error;
-// docs/validation.md#contact-truth.
-const double kContactError = getenv("KE") ? atof(getenv("KE")) : 0.4;
-
-// Rounds of bisection there, on top of RefineOptions::rounds.
-const int kContactRounds = getenv("KR") ? atoi(getenv("KR")) : 2;
+// Refinement beside contacts, see RefineAtContacts; docs/validation.md#contact-truth.
+constexpr double kContactError = 0.4;  // of RefineOptions::error
+constexpr double kContactEnds =
+    2;  // ends of an edge may differ by so many of these errors in the first rounds
+constexpr int kContactEndRounds = 5;  // two halve all edges of an element
+constexpr int kContactRounds = 2;     // on top of RefineOptions::rounds
+constexpr int kContactSamples = 8;    // of SolveOptions::light_samples: noise there would look like bends
 
 // Shooting needs links only to see which nodes are hidden and where light is lost.
 constexpr int kProbes = 64;
@@ -121,7 +122,7 @@ class ProgressiveSolver {
     gained_ = NodeLobes(s_.mesh, degrees);
     got_.clear();
     std::vector<float> near = NearContacts(s_.scene, s_.mesh, s_.options.contact_distance);
-    if (!Shoot(AllNodes())) return false;
+    if (!Shoot(AllNodes(), s_.options.light_samples)) return false;
     const RefineOptions& options = s_.options.refine;
     Refinement refined;
     for (int round = 0; round < options.rounds && options.error > 0; ++round) {
@@ -132,7 +133,7 @@ class ProgressiveSolver {
       refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
       if (refined.made.empty()) break;
       near = CarryOver(near, refined);
-      if (!MoveTo(refined)) return false;
+      if (!MoveTo(refined, s_.options.light_samples)) return false;
     }
     if (!RefineAtContacts(std::move(near))) return false;
     s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
@@ -144,25 +145,26 @@ class ProgressiveSolver {
   }
 
   // Straight light of the emitters at `nodes`.
-  bool Shoot(const std::vector<uint32_t>& nodes) {
+  bool Shoot(const std::vector<uint32_t>& nodes, int samples) {
     received_.assign(s_.mesh.node_count(), 0.0f);
     s_.hidden.assign(s_.mesh.node_count(), 0);
     got_.resize(s_.mesh.node_count());
-    return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
+    return GatherShot(0, ShootingField(s_.mesh, emitters_), samples, nodes);
   }
 
   // Takes over a refined mesh, with straight light on its new nodes.
-  bool MoveTo(Refinement& refined) {
+  bool MoveTo(Refinement& refined, int samples) {
     gained_ = CarryOver(gained_, refined);
     std::vector<Received> got(refined.mesh.node_count());
     for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
     got_ = std::move(got);
     s_.mesh = std::move(refined.mesh);
-    return Shoot(refined.made);
+    return Shoot(refined.made, samples);
   }
 
   // Beside contacts much of the light has been reflected before and changes fast, since what stands there is
-  // close: there the mesh is refined for light reflected once, too.
+  // close: there the mesh is refined for light reflected once, too, measured against how bright that place
+  // is.
   bool RefineAtContacts(std::vector<float> near) {
     const RefineOptions& options = s_.options.refine;
     if (!(options.error > 0) || options.rounds == 0) return true;
@@ -170,14 +172,17 @@ class ProgressiveSolver {
     NodeLobes once = gained_;
     once.SetZero();
     std::vector<uint32_t> nodes = AllNodes();
+    const int samples = s_.options.light_samples * kContactSamples;
     Refinement refined;
     for (int round = 0; round < options.rounds + kContactRounds; ++round) {
       std::vector<bool> beside(s_.mesh.node_count(), false);  // on an element that is near
       for (const auto& e : s_.mesh.elements) {
-        if (near[e[0]] > 0 || near[e[1]] > 0 || near[e[2]] > 0) beside[e[0]] = beside[e[1]] = beside[e[2]] = true;
+        if (near[e[0]] > 0 || near[e[1]] > 0 || near[e[2]] > 0)
+          beside[e[0]] = beside[e[1]] = beside[e[2]] = true;
       }
       std::erase_if(nodes, [&](uint32_t n) { return !beside[n]; });
       if (nodes.empty()) return true;
+      if (round == 0 && !Shoot(nodes, samples)) return false;
       NodeLobes light = gained_;
       std::vector<Received> got = got_;
       {
@@ -195,15 +200,19 @@ class ProgressiveSolver {
       }
       const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
       const Roughness roughness(s_.mesh, light, area, near);
-      const std::vector<float> priority =
-          round == 0 ? roughness.BetweenEnds(error) : roughness.AtMidpoints(refined, error);
+      std::vector<float> priority(s_.mesh.element_count(), 0.0f);
+      // Halving an element tells about its longest edge only, so all edges are looked at first.
+      if (round < kContactEndRounds) priority = roughness.BetweenEnds(kContactEnds * error);
+      if (round > 0) {
+        const std::vector<float> bends = roughness.AtMidpoints(refined, error);
+        for (size_t e = 0; e < bends.size(); ++e) priority[e] = std::max(priority[e], bends[e]);
+      }
       refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, options.max_nodes);
-      if (getenv("KV")) fprintf(stderr, "contact round %d asked %zu made %zu\n", round, refined.asked, refined.made.size());
       if (refined.made.empty()) return true;
       near = CarryOver(near, refined);
       once = CarryOver(once, refined);
       nodes = refined.made;
-      if (!MoveTo(refined)) return false;
+      if (!MoveTo(refined, samples)) return false;
     }
     return true;
   }
