@@ -14,8 +14,11 @@ struct RefineOptions {
   /// Split where light in the middle of an edge is off the mean of its ends by more than this fraction of the
   /// brightness thereabouts (half that of the place, half the scene's mean); 0: keep the mesh uniform. Finer
   /// meshes cost nodes, about in inverse proportion. Default measured in docs/validation.md#refine.
+  /// Beside contacts (solver/near_contacts.h) light reflected once counts too, and the fraction is 0.4 of
+  /// this, of the place alone; docs/validation.md#contact-truth.
   double error = 0.10;
-  /// Rounds of bisection: two halve the edges. 0 to 16.
+  /// Rounds of bisection: two halve the edges. 0 to 16. Beside contacts they are followed by as many more,
+  /// and two.
   int rounds = 6;
   /// Stop refining beyond so many nodes.
   uint64_t max_nodes = 20'000'000;

@@ -178,14 +178,14 @@ TEST(SlowContactLeakTest, AbuttingBoxesDoNotLeakWhereTheLowerOneEnds) {
       {{"top of the low box", p, q, x, y}, {"side of the high box above", p, q, y, x}});
 }
 
-// ABUTTING
-TEST(SlowContactLeakTest, DISABLED_AbuttingBoxesDoNotLeakWhereTheNarrowerOneEnds) {
+TEST(SlowContactLeakTest, AbuttingBoxesDoNotLeakWhereTheNarrowerOneEnds) {
   const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ(), foot(0, 0, 0.2f), q(0, 0.5f, 0.2f);
   ExpectNoLeaksAtAbuttingBoxes(
       {{"front of the low box", foot, q, x, z}, {"side of the high box before", foot, q, z, x}});
 }
 
-// FRAME
+// Fails: 6.8 % too dark 1 mm beside the frame, 5.8 % at 5 mm, 3.3 % at 2 cm (within its allowance). Light on
+// the wall varies within millimetres there, as the gap shows under the frame; elements are centimetres wide.
 TEST(SlowContactLeakTest, DISABLED_FrameAMillimetreOffAWallKeepsItsShadowBehindIt) {
   Room room;
   room.AddLamp({0.7f, 2.9f, 0.3f}, 10);
