@@ -150,6 +150,7 @@ json SettingsJson(const SolveOptions& o) {
           {"lobe_error", o.lobes.error},
           {"contact_distance", o.contact_distance},
           {"refine_error", o.refine.error},
+          {"contact_error", o.refine.contact_error},
           {"refine_rounds", o.refine.rounds},
           {"max_nodes", o.refine.max_nodes},
           {"transport", Name(o.transport)},

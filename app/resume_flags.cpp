@@ -37,6 +37,7 @@ const std::map<std::string, Value>& Settings() {
          return o.lobes.force_l_max < 0 ? std::string("none") : std::to_string(o.lobes.force_l_max);
        }},
       {"--refine-error", [](const SolveOptions& o) { return Number(100 * o.refine.error); }},
+      {"--contact-error", [](const SolveOptions& o) { return Number(100 * o.refine.contact_error); }},
       {"--refine-rounds", [](const SolveOptions& o) { return std::to_string(o.refine.rounds); }},
       {"--max-nodes", [](const SolveOptions& o) { return std::to_string(o.refine.max_nodes); }},
       {"--transport",

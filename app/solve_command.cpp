@@ -31,11 +31,13 @@ struct SolveFlags {
   double checkpoint_seconds = SolveControl{}.checkpoint_seconds;
   std::optional<double> max_memory_gigabytes;
   double refine_error_percent = 100 * RefineOptions{}.error;
+  double contact_error_percent = 100 * RefineOptions{}.contact_error;
 };
 
 void Validate(SolveFlags& flags) {
   flags.options.lobes = flags.lobes.Options();
   flags.options.refine.error = flags.refine_error_percent / 100;
+  flags.options.refine.contact_error = flags.contact_error_percent / 100;
   if (const std::string wrong = flags.options.Validate(); !wrong.empty()) throw UsageError(wrong);
   if (!(flags.checkpoint_seconds >= 0)) {
     throw UsageError("--checkpoint-seconds: " + Short(flags.checkpoint_seconds) +
@@ -288,6 +290,13 @@ void AddSolveCommand(CLI::App& app, Command* command) {
   solve
       ->add_option("--refine-error", flags->refine_error_percent,
                    "Split elements where light bends by more, percent of the brightness there; 0: never")
+      ->type_name("PCT")
+      ->capture_default_str();
+  solve
+      ->add_option(
+          "--contact-error", flags->contact_error_percent,
+          "Beside contacts, split also where reflected light bends by more, percent of the brightness "
+          "there; 4 is accurate to a millimetre and takes several times as long; 0: never")
       ->type_name("PCT")
       ->capture_default_str();
   solve->add_option("--refine-rounds", o.refine.rounds, "Rounds of splitting; two of them halve an edge")

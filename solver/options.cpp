@@ -27,6 +27,8 @@ std::string SolveOptions::Validate() const {
     out << "border inset " << mesh.border_inset << " is out of range: 0 to 1 is expected";
   } else if (!(refine.error >= 0) || !(refine.error <= 10)) {
     out << "refine error " << refine.error * 100 << " % is out of range: 0 to 1000 is expected";
+  } else if (!(refine.contact_error >= 0) || !(refine.contact_error <= 10)) {
+    out << "contact error " << refine.contact_error * 100 << " % is out of range: 0 to 1000 is expected";
   } else if (refine.rounds < 0 || refine.rounds > 16) {
     out << "refine rounds " << refine.rounds << " is out of range: 0 to 16 is expected";
   } else if (refine.max_nodes < 1) {

@@ -5,6 +5,12 @@
 #include <numbers>
 
 namespace lobe {
+namespace {
+
+// Light beside contacts is not measured against less than this fraction of the scene's mean. (chosen)
+constexpr double kDarkest = 0.05;
+
+}  // namespace
 
 Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area)
     : mesh_(mesh), light_(light), area_(area) {
@@ -17,6 +23,24 @@ Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector
     whole += area[n];
   }
   mean_ = whole > 0 ? sum / whole : 0;
+}
+
+Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
+                     const std::vector<float>& near)
+    : Roughness(mesh, light, area) {
+  near_ = &near;
+}
+
+double Roughness::Relative(double difference, const uint32_t ends[2]) const {
+  const double one = 1;
+  const double here = 0.5 * (Norm(&ends[0], &one, 1) + Norm(&ends[1], &one, 1));
+  if (near_) {
+    const double near = std::min(1.0, double((*near_)[ends[0]]) + (*near_)[ends[1]]);
+    const double scale = std::max(here, kDarkest * mean_);
+    return scale > 0 ? near * difference / scale : 0;
+  }
+  const double scale = 0.5 * (here + mean_);
+  return scale > 0 ? difference / scale : 0;
 }
 
 double Roughness::Norm(const uint32_t* nodes, const double* weights, int count) const {
@@ -45,15 +69,13 @@ double Roughness::Norm(const uint32_t* nodes, const double* weights, int count) 
 
 std::vector<float> Roughness::BetweenEnds(double error) const {
   std::vector<float> out(mesh_.element_count(), 0.0f);
-  const double one = 1, difference[2] = {1, -1};
+  const double difference[2] = {1, -1};
   for (uint32_t e = 0; e < mesh_.element_count(); ++e) {
     double worst = 0;
     for (int k = 0; k < 3; ++k) {
       const uint32_t ends[2] = {mesh_.elements[e][k], mesh_.elements[e][(k + 1) % 3]};
       if (area_[ends[0]] == 0 || area_[ends[1]] == 0) continue;
-      const double here = 0.5 * (Norm(&ends[0], &one, 1) + Norm(&ends[1], &one, 1));
-      const double scale = 0.5 * (here + mean_);
-      if (scale > 0) worst = std::max(worst, Norm(ends, difference, 2) / scale);
+      worst = std::max(worst, Relative(Norm(ends, difference, 2), ends));
     }
     if (worst > error) out[e] = float(worst);
   }
@@ -62,14 +84,12 @@ std::vector<float> Roughness::BetweenEnds(double error) const {
 
 std::vector<float> Roughness::AtMidpoints(const Refinement& refined, double error) const {
   std::vector<float> node_error(mesh_.node_count(), 0.0f);
-  const double one = 1, bend[3] = {1, -0.5, -0.5};
+  const double bend[3] = {1, -0.5, -0.5};
   for (const uint32_t n : refined.made) {
     const uint32_t nodes[3] = {n, refined.parents[n][0], refined.parents[n][1]};
     if (nodes[1] == nodes[2] || area_[nodes[0]] == 0 || area_[nodes[1]] == 0 || area_[nodes[2]] == 0)
       continue;
-    const double here = 0.5 * (Norm(&nodes[1], &one, 1) + Norm(&nodes[2], &one, 1));
-    const double scale = 0.5 * (here + mean_);
-    if (scale > 0) node_error[n] = float(Norm(nodes, bend, 3) / scale);
+    node_error[n] = float(Relative(Norm(nodes, bend, 3), nodes + 1));
   }
   std::vector<float> out(mesh_.element_count(), 0.0f);
   for (uint32_t e = 0; e < mesh_.element_count(); ++e) {

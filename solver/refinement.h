@@ -14,8 +14,15 @@ struct RefineOptions {
   /// Split where light in the middle of an edge is off the mean of its ends by more than this fraction of the
   /// brightness thereabouts (half that of the place, half the scene's mean); 0: keep the mesh uniform. Finer
   /// meshes cost nodes, about in inverse proportion. Default measured in docs/validation.md#refine.
+  /// Beside contacts (solver/near_contacts.h) light reflected once counts too, and the fraction is 0.4 of
+  /// this, of the place alone; docs/validation.md#contact-truth.
   double error = 0.10;
-  /// Rounds of bisection: two halve the edges. 0 to 16.
+  /// Beside lines of contact, split also where light reflected once bends by more than this fraction of the
+  /// brightness of the very place; 0: do not look. 0.04 brings light at contacts within 3 % of a path tracer's
+  /// up to a millimetre off, for two to six times the time (docs/validation.md#contact-truth).
+  double contact_error = 0;
+  /// Rounds of bisection: two halve the edges. 0 to 16. Beside contacts they are followed by as many more,
+  /// and two.
   int rounds = 6;
   /// Stop refining beyond so many nodes.
   uint64_t max_nodes = 20'000'000;
@@ -27,6 +34,10 @@ class Roughness {
  public:
   /// `light` on the nodes of `mesh`, `area` per node (0: leave the node out).
   Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area);
+  /// With the eye on contacts: only what is `near` them (NearContacts) counts, in proportion, and against the
+  /// brightness of the place alone: beside a contact it may be dark.
+  Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
+            const std::vector<float>& near);
 
   /// First guess, per element: the largest difference between ends of an edge, where above `error`.
   std::vector<float> BetweenEnds(double error) const;
@@ -37,10 +48,13 @@ class Roughness {
  private:
   // rms over directions and channels of sum_i weight_i L_i, nodes of one patch.
   double Norm(const uint32_t* nodes, const double* weights, int count) const;
+  // Of a difference on the edge between `ends`, over the brightness there.
+  double Relative(double difference, const uint32_t ends[2]) const;
 
   const Mesh& mesh_;
   const NodeLobes& light_;
   const std::vector<double>& area_;
+  const std::vector<float>* near_ = nullptr;
   double mean_ = 0;  // rms brightness of the scene
 };
 

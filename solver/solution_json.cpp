@@ -67,6 +67,7 @@ json Settings(const SolveOptions& o) {
               {"lMax", o.lobes.l_max},
               {"lobeError", o.lobes.error},
               {"refineError", o.refine.error},
+              {"contactError", o.refine.contact_error},
               {"refineRounds", o.refine.rounds},
               {"maxNodes", o.refine.max_nodes},
               {"transport", Name(o.transport)},
@@ -95,6 +96,7 @@ SolveOptions ReadSettings(const GltfJson& fields) {
   o.lobes.error = RequiredNumber(fields, "lobeError");
   o.lobes.force_l_max = fields.Has("forceLMax") ? RequiredInt(fields, "forceLMax") : -1;
   o.refine.error = RequiredNumber(fields, "refineError");
+  o.refine.contact_error = fields.Number("contactError", 0);
   o.refine.rounds = RequiredInt(fields, "refineRounds");
   o.refine.max_nodes = fields.RequiredWhole("maxNodes");
   o.transport = ReadName(fields, "transport", kTransports);

@@ -22,6 +22,7 @@
 #include "solver/link_gather.h"
 #include "solver/links.h"
 #include "solver/losses.h"
+#include "solver/near_contacts.h"
 #include "solver/planar_mirrors.h"
 #include "solver/refinement.h"
 #include "solver/resume.h"
@@ -40,6 +41,16 @@ constexpr double kEmissionShare = 0.1;
 // From one checkpoint to the next passes at least this many times what writing took: at most a tenth of the
 // time goes into them.
 constexpr double kCheckpointWork = 10;
+
+// Refinement beside contacts, see RefineAtContacts; docs/validation.md#contact-truth.
+constexpr double kContactEnds =
+    2;  // ends of an edge may differ by so many of these errors in the first rounds
+constexpr int kContactEndRounds = 5;  // two halve all edges of an element
+constexpr int kContactRounds = 2;     // on top of RefineOptions::rounds
+constexpr int kContactSamples = 8;    // of SolveOptions::light_samples: noise there would look like bends
+
+// Shooting needs links only to see which nodes are hidden and where light is lost.
+constexpr int kProbes = 64;
 
 Ledger::Power& operator+=(Ledger::Power& a, const Eigen::Array3d& b) {
   for (int c = 0; c < 3; ++c) a[c] += b[c];
@@ -225,34 +236,106 @@ class ProgressiveSolver {
     const std::vector<PartDegrees> degrees = Degrees();
     phase_ = Phase::kEmission;
     gained_ = NodeLobes(s_.mesh, degrees);
-    const auto shoot = [&](const std::vector<uint32_t>& nodes) {
-      if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
-      s_.hidden.assign(s_.mesh.node_count(), 0);
-      got_.resize(s_.mesh.node_count());
-      return GatherShot(0, ShootingField(s_.mesh, emitters_), s_.options.light_samples, nodes);
-    };
-    if (!shoot(AllNodes())) return false;
+    got_.clear();
+    const bool at_contacts = s_.options.refine.contact_error > 0 && s_.options.refine.rounds > 0;
+    std::vector<float> near;
+    if (at_contacts) near = NearContacts(s_.scene, s_.mesh, s_.options.contact_distance);
+    if (!Shoot(AllNodes(), s_.options.light_samples)) return false;
     const RefineOptions& options = s_.options.refine;
     Refinement refined;
     for (int round = 0; round < options.rounds && options.error > 0; ++round) {
       const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
       const Roughness roughness(s_.mesh, gained_, area);
-      const std::vector<float> priority =
-          round == 0 ? roughness.BetweenEnds(options.error) : roughness.AtMidpoints(refined, options.error);
-      const size_t most_nodes = MostNodes();
-      refined = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, most_nodes);
-      if (refined.out_of_nodes && most_nodes < options.max_nodes) short_of_memory_ = true;
+      refined = Refined(round == 0 ? roughness.BetweenEnds(options.error)
+                                   : roughness.AtMidpoints(refined, options.error));
       if (refined.made.empty()) break;
-      gained_ = CarryOver(gained_, refined);
-      std::vector<Received> got(refined.mesh.node_count());
-      for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
-      got_ = std::move(got);
-      s_.mesh = std::move(refined.mesh);
-      if (!shoot(refined.made)) return false;
+      if (at_contacts) near = CarryOver(near, refined);
+      if (!MoveTo(refined, s_.options.light_samples)) return false;
     }
-    if (options.rounds > 0 && options.error > 0) TellRefined();
+    if (at_contacts && !RefineAtContacts(std::move(near))) return false;
+    if (options.rounds > 0 && (options.error > 0 || at_contacts)) TellRefined();
     s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
     FindOpposite();
+    return true;
+  }
+
+  // A finer mesh, as far as nodes and memory allow.
+  Refinement Refined(const std::vector<float>& priority) {
+    const size_t most_nodes = MostNodes();
+    Refinement out = RefineMesh(s_.scene, s_.mesh, priority, s_.options.mesh, most_nodes);
+    if (out.out_of_nodes && most_nodes < s_.options.refine.max_nodes) short_of_memory_ = true;
+    return out;
+  }
+
+  // Straight light of the emitters at `nodes`.
+  bool Shoot(const std::vector<uint32_t>& nodes, int samples) {
+    if (!by_links_) s_.received.assign(s_.mesh.node_count(), 0.0f);
+    s_.hidden.assign(s_.mesh.node_count(), 0);
+    got_.resize(s_.mesh.node_count());
+    return GatherShot(0, ShootingField(s_.mesh, emitters_), samples, nodes);
+  }
+
+  // Takes over a refined mesh, with straight light on its new nodes.
+  bool MoveTo(Refinement& refined, int samples) {
+    gained_ = CarryOver(gained_, refined);
+    std::vector<Received> got(refined.mesh.node_count());
+    for (uint32_t n = 0; n < got_.size(); ++n) got[refined.node_of_old[n]] = got_[n];
+    got_ = std::move(got);
+    s_.mesh = std::move(refined.mesh);
+    return Shoot(refined.made, samples);
+  }
+
+  // Beside contacts much of the light has been reflected before and changes fast, since what stands there is
+  // close: there the mesh is refined for light reflected once, too, measured against how bright that place
+  // is.
+  bool RefineAtContacts(std::vector<float> near) {
+    const RefineOptions& options = s_.options.refine;
+    const double error = options.contact_error;
+    NodeLobes once = gained_;
+    once.SetZero();
+    std::vector<uint32_t> nodes = AllNodes();
+    const int samples = s_.options.light_samples * kContactSamples;
+    Refinement refined;
+    for (int round = 0; round < options.rounds + kContactRounds; ++round) {
+      std::vector<bool> beside(s_.mesh.node_count(), false);  // on an element that is near
+      for (const auto& e : s_.mesh.elements) {
+        if (near[e[0]] > 0 || near[e[1]] > 0 || near[e[2]] > 0)
+          beside[e[0]] = beside[e[1]] = beside[e[2]] = true;
+      }
+      std::erase_if(nodes, [&](uint32_t n) { return !beside[n]; });
+      if (nodes.empty()) return true;
+      if (round == 0 && !Shoot(nodes, samples)) return false;
+      NodeLobes light = gained_;
+      std::vector<Received> got = got_;
+      {
+        const ShootingField field(s_.scene, s_.mesh, s_.hidden, light);
+        gained_ = once;
+        if (!GatherShot(0, field, s_.options.delta_areas, nodes)) return false;
+        once = gained_;
+      }
+      gained_ = light;
+      got_ = std::move(got);
+      for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+        const auto to = light.all(n);
+        const auto from = once.all(n);
+        for (size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+      }
+      const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
+      const Roughness roughness(s_.mesh, light, area, near);
+      std::vector<float> priority(s_.mesh.element_count(), 0.0f);
+      // Halving an element tells about its longest edge only, so all edges are looked at first.
+      if (round < kContactEndRounds) priority = roughness.BetweenEnds(kContactEnds * error);
+      if (round > 0) {
+        const std::vector<float> bends = roughness.AtMidpoints(refined, error);
+        for (size_t e = 0; e < bends.size(); ++e) priority[e] = std::max(priority[e], bends[e]);
+      }
+      refined = Refined(priority);
+      if (refined.made.empty()) return true;
+      near = CarryOver(near, refined);
+      once = CarryOver(once, refined);
+      nodes = refined.made;
+      if (!MoveTo(refined, samples)) return false;
+    }
     return true;
   }
 
