@@ -35,6 +35,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 const std::string kTests = "tests";  // run from the project's root
+const char* const kBoxes[] = {"cornell_diffuse", "cornell_glossy"};
 
 ScalarTable GgxTable(double roughness, int l_max) {
   const double a = roughness * roughness;
