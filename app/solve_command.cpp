@@ -319,8 +319,9 @@ void AddSolveCommand(CLI::App& app, Command* command) {
                    "Links (rays traced once) per diffuse node; glossy nodes take more, by their degree")
       ->type_name("M")
       ->capture_default_str();
-  solve->add_flag("--plain-sweeps{false}", o.accelerate,
-                  "No shooting ahead and no thinner links for dim bounces: slower, to check these against");
+  solve->add_flag_callback(
+      "--plain-sweeps", [&o] { o.accelerate = false; },
+      "No shooting ahead and no thinner links for dim bounces: slower, to check these against");
   solve->add_option("--light-samples", o.light_samples, "Shadow rays per node over all lamps together")
       ->type_name("N")
       ->capture_default_str();
