@@ -18,8 +18,8 @@ struct RefineOptions {
   /// this, of the place alone; docs/validation.md#contact-truth.
   double error = 0.10;
   /// Beside lines of contact, split also where light reflected once bends by more than this fraction of the
-  /// brightness of the very place; 0: do not look. 0.04 brings light at contacts within 3 % of a path tracer's
-  /// up to a millimetre off, for three to seven times the time (docs/validation.md#contact-truth).
+  /// brightness of the very place; 0: do not look. 0.04 brings light at contacts within 3 % of a path
+  /// tracer's up to a millimetre off, for three to seven times the time (docs/validation.md#contact-truth).
   double contact_error = 0;
   /// Rounds of bisection: two halve the edges. 0 to 16. Beside contacts they are followed by as many more,
   /// and two.

@@ -98,7 +98,7 @@ TEST(InterruptTest, ProgressTellsPhasePowerNodesRaysAndTimeLeft) {
   const ProgramResult r =
       RunLobe({"solve", ScenePath("cornell_diffuse"), "-o", folder.File("out.glb"), "--edge", "0.5",
                "--refine-error", "0", "--transport", "shooting", "--step-fraction", "0.1", "--delta-areas",
-               "512", "--residual", "1e-4", "--max-seconds", "9"});
+               "2048", "--residual", "1e-6", "--max-seconds", "5"});  // plain lines come every two seconds
   EXPECT_THAT(r.err, HasSubstr("needs about "));
   EXPECT_THAT(r.err, ::testing::ContainsRegex(
                          "bounce [0-9]+ \\([0-9]+ %\\), [0-9.e-]+ % of the power still moving, [0-9]+ nodes, "
