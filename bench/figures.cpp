@@ -13,6 +13,7 @@
 #include <tbb/global_control.h>
 
 #include "bench/timing.h"
+#include "bench/topics.h"
 #include "brdf/frame.h"
 #include "render/path_tracing.h"
 #include "scene/gltf_scene.h"
@@ -412,27 +413,16 @@ void Paths() {
   }
 }
 
-const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"basis", Basis},
-                                                                            {"degree", Degree},
-                                                                            {"flux", Flux},
-                                                                            {"knots", Knots},
-                                                                            {"tables", Tables},
-                                                                            {"accumulation", Accumulation},
-                                                                            {"refinement", RefinementSpeed},
-                                                                            {"paths", Paths}};
+const Topics kTopics = {{"basis", Basis},
+                        {"degree", Degree},
+                        {"flux", Flux},
+                        {"knots", Knots},
+                        {"tables", Tables},
+                        {"accumulation", Accumulation},
+                        {"refinement", RefinementSpeed},
+                        {"paths", Paths}};
 
 }  // namespace
 }  // namespace lobe
 
-int main(int argc, char** argv) {
-  for (const auto& [name, print] : lobe::kTopics) {
-    if (argc == 2 && name == argv[1]) {
-      print();
-      return 0;
-    }
-  }
-  std::fprintf(stderr, "usage, from the project's root: figures TOPIC, with TOPIC one of");
-  for (const auto& topic : lobe::kTopics) std::fprintf(stderr, " %s", topic.first.c_str());
-  std::fprintf(stderr, "\n");
-  return 2;
-}
+int main(int argc, char** argv) { return lobe::PrintTopic("figures", lobe::kTopics, argc, argv); }

@@ -14,6 +14,7 @@
 #include <tbb/global_control.h>
 
 #include "bench/timing.h"
+#include "bench/topics.h"
 #include "scene/gltf_scene.h"
 #include "solver/solver.h"
 #include "tests/support/gloss_furnace.h"
@@ -339,34 +340,23 @@ void Threads() {
   }
 }
 
-const std::vector<std::pair<std::string, std::function<void()>>> kTopics = {{"furnaces", Furnaces},
-                                                                            {"form-factors", FormFactors},
-                                                                            {"cornell", Cornell},
-                                                                            {"transport", TransportFigures},
-                                                                            {"links", LinkCounts},
-                                                                            {"refine", RefineErrors},
-                                                                            {"growth", Growth},
-                                                                            {"threads", Threads},
-                                                                            {"light-samples", LightSamples},
-                                                                            {"delta-areas", DeltaAreas},
-                                                                            {"step-fraction", Portions},
-                                                                            {"border", Border},
-                                                                            {"contacts", Contacts},
-                                                                            {"lobe-error", LobeError},
-                                                                            {"residual", Residual}};
+const Topics kTopics = {{"furnaces", Furnaces},
+                        {"form-factors", FormFactors},
+                        {"cornell", Cornell},
+                        {"transport", TransportFigures},
+                        {"links", LinkCounts},
+                        {"refine", RefineErrors},
+                        {"growth", Growth},
+                        {"threads", Threads},
+                        {"light-samples", LightSamples},
+                        {"delta-areas", DeltaAreas},
+                        {"step-fraction", Portions},
+                        {"border", Border},
+                        {"contacts", Contacts},
+                        {"lobe-error", LobeError},
+                        {"residual", Residual}};
 
 }  // namespace
 }  // namespace lobe
 
-int main(int argc, char** argv) {
-  for (const auto& [name, print] : lobe::kTopics) {
-    if (argc == 2 && name == argv[1]) {
-      print();
-      return 0;
-    }
-  }
-  std::fprintf(stderr, "usage, from the project's root: solver_figures TOPIC, with TOPIC one of");
-  for (const auto& topic : lobe::kTopics) std::fprintf(stderr, " %s", topic.first.c_str());
-  std::fprintf(stderr, "\n");
-  return 2;
-}
+int main(int argc, char** argv) { return lobe::PrintTopic("solver_figures", lobe::kTopics, argc, argv); }

@@ -10,6 +10,7 @@
 
 #include "brdf/frame.h"
 #include "render/eye_rays.h"
+#include "scene/mirror.h"
 
 namespace lobe {
 std::string RenderOptions::Validate() const {
@@ -35,19 +36,11 @@ struct Renderer::Impl {
 
   explicit Impl(const Solution& s) : solution(s), tracer(s.scene) {}
 
-  // Reflected light stored at a hit, towards `wo`, unclamped; `normal`: shading normal there.
-  Rgb Stored(const RayHit& hit, const Vec3& wo, float* basis, Vec3* normal) const {
-    const Mesh& mesh = solution.mesh;
-    const auto where = mesh.Locate(hit.face, hit.side, hit.u, hit.v);
-    const Vec3 geometric = solution.scene.GeometricNormal(solution.scene.faces[hit.face]);
-    *normal = hit.side == Side::kFront ? geometric : Vec3(-geometric);
+  // Reflected light stored at a place, towards `wo`, unclamped.
+  Rgb Stored(const Mesh::Location& where, const Vec3& wo, float* basis) const {
     if (where.element == kNone) return Rgb::Zero();
+    const Mesh& mesh = solution.mesh;
     const bool planar = mesh.patches[mesh.element_patch[where.element]].planar;
-    if (!planar) {
-      Vec3 n = Vec3::Zero();
-      for (int i = 0; i < 3; ++i) n += where.weight[i] * mesh.node_normal[mesh.elements[where.element][i]];
-      if (n.squaredNorm() > 0) *normal = n.normalized();
-    }
     const NodeWeights w = Interpolate(mesh, solution.hidden, where);
     Rgb out = Rgb::Zero();
     for (int k = 0; k < w.count; ++k) {
@@ -68,27 +61,22 @@ struct Renderer::Impl {
       const Material& material = solution.scene.materials[face.material];
       if (hit.side == Side::kBack && !material.double_sided) return radiance;
       const Vec3 wo = -ray.direction.normalized();
-      Vec3 normal;
-      const Rgb stored = Stored(hit, wo, basis, &normal);
+      const auto where = solution.mesh.Locate(hit.face, hit.side, hit.u, hit.v);
+      const Rgb stored = Stored(where, wo, basis);
       const Rgb shown = stored.max(0.0f);
       sums.clamped += (throughput * (shown - stored)).sum();
       radiance += throughput * (material.emission + shown);
 
       if (solution.material_kinds[face.material] != GlossKind::kMirror) return radiance;
-      const float cosine = std::clamp(wo.dot(normal), 0.0f, 1.0f);
+      const HitPoint at = FindHitPoint(solution.scene, solution.mesh, ray, hit, where);
+      const float cosine = std::clamp(wo.dot(at.normal), 0.0f, 1.0f);
       throughput *= std::get<MetallicRoughness>(material.reflectance).Fresnel(cosine);
       if ((throughput <= 0).all()) return radiance;
       if (depth == mirror_depth) {
         sums.cut_off += throughput.sum();
         return radiance;
       }
-      const Vec3 at = ray.origin + ray.direction * hit.t;
-      const Vec3 geometric = solution.scene.GeometricNormal(face) * (hit.side == Side::kFront ? 1.0f : -1.0f);
-      Vec3 reflected = 2.0f * wo.dot(normal) * normal - wo;
-      // A reflection about an interpolated normal may point into the surface.
-      const float into = reflected.dot(geometric);
-      if (into <= 0) reflected -= (into - 1e-4f) * geometric;
-      ray = {at + geometric * tracer.epsilon(), 0.0f, reflected.normalized(),
+      ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),
              std::numeric_limits<float>::infinity()};
       hit = tracer.Intersect(ray);
       ++sums.rays;

@@ -70,13 +70,6 @@ const Rgb& LinkField::emitted(uint32_t node) const {
 LinkReceiver::LinkReceiver(const Mesh& mesh, const Links& links, const std::vector<MaterialLobes>& materials)
     : mesh_(mesh), links_(links), materials_(materials) {}
 
-LinkDirections& LinkReceiver::Directions(const LinkPattern& pattern) {
-  for (auto& d : directions_) {
-    if (d.pattern().rings == pattern.rings && d.pattern().sectors == pattern.sectors) return d;
-  }
-  return directions_.emplace_back(pattern);
-}
-
 void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ring_links, int ring, int first,
                             int thinning, const LinkDirections& directions, const Frame& frame,
                             Received& work) {
@@ -109,7 +102,7 @@ void LinkReceiver::ReadRing(const LinkField& field, std::span<const uint32_t> ri
             radiance = field.Read(hop->node, UnpackDirection(hop->direction));
             ++work.lobe_reads;
           }
-          for (int c = 0; c < 3; ++c) value[c] += radiance[c] * (float(hop->fresnel[c]) / 65535.0f);
+          value += radiance * hop->Throughput();
         }
         if (hop->last) break;
       }
@@ -127,7 +120,7 @@ Received LinkReceiver::Gather(uint32_t node, const LinkField& field, int thinnin
   const LinkPattern& pattern = links_.pattern(patch);
   const std::span<const uint32_t> links = links_.of(node);
   const Frame frame(mesh_.node_normal[node]);
-  LinkDirections& directions = Directions(pattern);
+  LinkDirections& directions = directions_.Of(pattern);
   const int count = pattern.sectors / thinning;
   const float weight = kPi / float(pattern.rings * count);
   ring_.resize(3 * size_t(pattern.sectors));

@@ -62,14 +62,13 @@ class LinkReceiver {
   Received Gather(uint32_t node, const LinkField& field, int thinning, float* out);
 
  private:
-  LinkDirections& Directions(const LinkPattern& pattern);
   void ReadRing(const LinkField& field, std::span<const uint32_t> ring_links, int ring, int first,
                 int thinning, const LinkDirections& directions, const Frame& frame, Received& work);
 
   const Mesh& mesh_;
   const Links& links_;
   const std::vector<MaterialLobes>& materials_;
-  std::vector<LinkDirections> directions_;
+  DirectionsByPattern directions_;
   std::vector<float> ring_;  // three planes, one value a sector
   IncidentMoments moments_;
 };

@@ -16,6 +16,7 @@ namespace lobe {
 struct LinkPattern {
   int rings = 0, sectors = 0;
   int count() const { return rings * sectors; }
+  bool operator==(const LinkPattern&) const = default;
 
   /// A multiple of kThinnest, so that dim steps can use every second, fourth or eighth direction.
   static constexpr int kThinnest = 8;
@@ -51,6 +52,21 @@ class LinkDirections {
   LinkPattern pattern_;
   std::vector<float> cos_, sin_;  // of the sectors, the first at 0
   std::vector<float> cos_theta_, sin_theta_, phi_, cos_phi_, sin_phi_;
+};
+
+/// The directions of every pattern met, made once. One per thread.
+class DirectionsByPattern {
+ public:
+  /// Good until the next call.
+  LinkDirections& Of(const LinkPattern& pattern) {
+    for (auto& d : directions_) {
+      if (d.pattern() == pattern) return d;
+    }
+    return directions_.emplace_back(pattern);
+  }
+
+ private:
+  std::vector<LinkDirections> directions_;
 };
 
 }  // namespace lobe

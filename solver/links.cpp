@@ -72,15 +72,8 @@ struct Links::Tracing {
     std::vector<float> x, y, z;  // directions
     std::vector<RayHit> hits;
     std::vector<Mesh::Location> where;
-    std::vector<LinkDirections> directions;  // one per pattern met
+    DirectionsByPattern directions;
     uint64_t traced = 0;
-
-    LinkDirections& For(const LinkPattern& pattern) {
-      for (auto& d : directions) {
-        if (d.pattern().rings == pattern.rings && d.pattern().sectors == pattern.sectors) return d;
-      }
-      return directions.emplace_back(pattern);
-    }
   };
 
   // 6 * element + order, or a lost link.
@@ -97,7 +90,7 @@ struct Links::Tracing {
 
   void TraceNode(uint32_t node, const LinkPattern& pattern, Scratch& scratch, std::span<uint32_t> out,
                  std::vector<Hop>& hops) const {
-    LinkDirections& directions = scratch.For(pattern);
+    LinkDirections& directions = scratch.directions.Of(pattern);
     directions.Start(node, options.seed);
     const Frame frame(mesh.node_normal[node]);
     const Vec3& outward = mesh.node_sample_normal[node];

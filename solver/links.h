@@ -44,6 +44,7 @@ class Links {
     uint16_t last : 1;      ///< ends the chain
     uint16_t emission : 1;  ///< the surface's own emission is read too: nothing else carries it here
     uint16_t cut : 1;       ///< a mirror beyond kMaxMirrors: what it throws is lost
+    Rgb Throughput() const { return Rgb(float(fresnel[0]), float(fresnel[1]), float(fresnel[2])) / 65535.0f; }
   };
   static_assert(sizeof(Hop) == 16);
 

@@ -11,7 +11,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
                   const std::vector<double>& node_area) {
   struct Scratch {
     std::vector<float> basis = std::vector<float>(kMaxBasisSize);
-    std::vector<LinkDirections> directions;
+    DirectionsByPattern directions;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
   std::vector<Losses> of_node(mesh.node_count());
@@ -30,8 +30,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
       Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero();
       if (Links::IsChain(targets[i])) {
         for (const Links::Hop* hop = links.chain(targets[i]);; ++hop) {
-          const Rgb throughput =
-              Rgb(float(hop->fresnel[0]), float(hop->fresnel[1]), float(hop->fresnel[2])) / 65535.0f;
+          const Rgb throughput = hop->Throughput();
           if (hop->node == Links::kEscaped) escaped += throughput;
           if (hop->last && (hop->node == Links::kBlocked || hop->cut)) blocked += throughput;
           if (hop->last) break;
@@ -43,10 +42,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
       Vec3 wo = Vec3::UnitZ();
       if (!diffuse) {
         if (!directions) {
-          for (auto& d : scratch.directions) {
-            if (d.pattern().rings == pattern.rings && d.pattern().sectors == pattern.sectors) directions = &d;
-          }
-          if (!directions) directions = &scratch.directions.emplace_back(pattern);
+          directions = &scratch.directions.Of(pattern);
           directions->Start(n, links.seed());
         }
         wo = directions->Local(int(i) / pattern.sectors, int(i) % pattern.sectors);

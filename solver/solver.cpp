@@ -49,9 +49,6 @@ constexpr int kContactEndRounds = 5;  // two halve all edges of an element
 constexpr int kContactRounds = 2;     // on top of RefineOptions::rounds
 constexpr int kContactSamples = 8;    // of SolveOptions::light_samples: noise there would look like bends
 
-// Shooting needs links only to see which nodes are hidden and where light is lost.
-constexpr int kProbes = 64;
-
 Ledger::Power& operator+=(Ledger::Power& a, const Eigen::Array3d& b) {
   for (int c = 0; c < 3; ++c) a[c] += b[c];
   return a;
