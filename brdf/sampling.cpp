@@ -99,6 +99,14 @@ ReflectanceSampler::ReflectanceSampler(const Reflectance& r) {
   }
 }
 
+ReflectanceSampler ReflectanceSampler::Gloss() const {
+  ReflectanceSampler gloss = *this;
+  gloss.base_ = gloss.transmission_ = Rgb::Zero();
+  gloss.base_mean_ = gloss.transmission_mean_ = 0;
+  gloss.diffuse_mean_ = gloss.diffuse_chance_ = gloss.transmission_chance_ = 0;
+  return gloss;
+}
+
 Rgb ReflectanceSampler::Fresnel(float cosine) const {
   return f0_ + f90_less_f0_ * Pow5(1 - std::min(std::abs(cosine), 1.0f));
 }

@@ -36,6 +36,8 @@ struct ReflectanceValue {
 class ReflectanceSampler {
  public:
   explicit ReflectanceSampler(const Reflectance& r);
+  /// The coat alone, without what is under it.
+  ReflectanceSampler Gloss() const;
 
   /// u1, u2, u3: uniform in [0, 1).
   SampledDirection Sample(const Vec3& wo, float u1, float u2, float u3) const;

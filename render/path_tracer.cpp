@@ -2,205 +2,75 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 #include <tbb/parallel_for.h>
 
-#include "brdf/frame.h"
-#include "scene/repeated_faces.h"
-
 namespace lobe {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kRouletteAfter = 8;       // bounces
 constexpr float kMostSurvival = 0.98f;  // so that a closed room of perfect mirrors comes to an end
-constexpr float kLeastCosine = 0.01f;   // of the eye about an interpolated normal
-constexpr float kLeastLift = 1e-4f;     // of a mirrored direction off its face
-
-// Barycentrics of a point drawn evenly from a triangle, by folding the unit square: Heitz, "A Low-Distortion
-// Map Between Triangle and Square", 2019.
-void FoldSquare(float* u, float* v) {
-  if (*v > *u) {
-    *u *= 0.5f;
-    *v -= *u;
-  } else {
-    *v *= 0.5f;
-    *u -= *v;
-  }
-}
-
-// Power heuristic: weight of a sample of density `mine` where `other` could have found it too.
-float PowerWeight(float mine, float other) {
-  const float ratio = other / mine;  // densities squared may overflow, their ratio may not
-  return 1 / (1 + ratio * ratio);
-}
 
 }  // namespace
 
 PathTracer::PathTracer(const Scene& scene, const PathTracerOptions& options)
-    : options_(options), tracer_(scene) {
-  for (const Material& m : scene.materials) {
-    surfaces_.push_back({ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided});
-  }
+    : options_(options), scene_(scene) {}
 
-  // Of faces at one place rays meet only some; lamps no ray can meet must not be sampled either.
-  const RepeatedFaces repeated = FindRepeatedFaces(scene);
-  std::vector<uint8_t> front_met(scene.faces.size(), repeated.twins.empty()), back_met = front_met;
-  if (!repeated.twins.empty()) {
-    for (const uint32_t f : repeated.kept) {
-      front_met[f] = 1;
-      const uint32_t twin = repeated.twins[f].face;
-      (twin == kNone ? back_met[f] : front_met[twin]) = 1;
-    }
-  }
-
-  std::vector<double> power;
-  double total = 0;
-  faces_.reserve(scene.faces.size());
-  for (uint32_t f = 0; f < scene.faces.size(); ++f) {
-    const Face& face = scene.faces[f];
-    const auto p = scene.Corners(face);
-    FaceShade shade;
-    shade.corner = p[0];
-    shade.edge1 = p[1] - p[0];
-    shade.edge2 = p[2] - p[0];
-    shade.normal = scene.GeometricNormal(face);
-    shade.material = face.material;
-    std::array<Vec3, 3> corner_normals;
-    bool smooth = false;
-    for (int k = 0; k < 3; ++k) {
-      corner_normals[k] = scene.CornerNormal(face, k);
-      smooth |= (corner_normals[k] - shade.normal).squaredNorm() > 1e-10f;  // files round to float
-    }
-    if (smooth) {
-      shade.smooth = uint32_t(corner_normals_.size());
-      corner_normals_.push_back(corner_normals);
-    }
-    const Surface& surface = surfaces_[face.material];
-    const float area = scene.Area(face);
-    if (surface.emits && area > 0) {
-      shade.emits[0] = front_met[f];
-      shade.emits[1] = back_met[f] && surface.double_sided;
-      if (const int sides = shade.emits[0] + shade.emits[1]; sides > 0) {
-        lamps_.push_back(f);
-        power.push_back(double(surface.emission.mean()) * area * sides);
-        total += power.back();
-      }
-    }
-    faces_.push_back(shade);
-  }
-  if (lamps_.empty()) return;
-  choose_lamp_ = AliasTable(power);
-  for (size_t i = 0; i < lamps_.size(); ++i) {
-    faces_[lamps_[i]].light_density = float(power[i] / total / scene.Area(scene.faces[lamps_[i]]));
-  }
-}
-
-Vec3 PathTracer::ShadingNormal(const RayHit& hit, const FaceShade& face) const {
-  Vec3 normal = face.normal;
-  if (face.smooth != kNone) {
-    const auto& n = corner_normals_[face.smooth];
-    normal = ((1 - hit.u - hit.v) * n[0] + hit.u * n[1] + hit.v * n[2]).normalized();
-  }
-  return hit.side == Side::kFront ? normal : Vec3(-normal);
-}
-
-// Where a path scatters.
-struct PathTracer::Vertex {
-  Vec3 position, normal;  // of the face, on the vertex's side
-  Frame frame;            // about the shading normal
-  Vec3 wo_local;
-  const ReflectanceSampler& sampler;
-};
-
-Rgb PathTracer::LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const {
-  const FaceShade& lamp = faces_[lamps_[choose_lamp_.Draw(random.NextBits())]];
-  float u = random.Next(), v = random.Next();
-  FoldSquare(&u, &v);
-  const Vec3 target = lamp.corner + u * lamp.edge1 + v * lamp.edge2;
-  const Vec3 way = target - vertex.position;
-  const float distance2 = way.squaredNorm(), towards = -lamp.normal.dot(way);
-  if (!(distance2 > 0) || towards == 0 || !lamp.emits[towards < 0]) return Rgb::Zero();
-
-  const float distance = std::sqrt(distance2);
-  const Vec3 wi = way / distance, wi_local = vertex.frame.ToLocal(wi);
-  const float above = wi.dot(vertex.normal);
-  if (!(above * wi_local.z() > 0) || (above < 0 && !vertex.sampler.transmits())) return Rgb::Zero();
-  const ReflectanceValue value = vertex.sampler.Evaluate(vertex.wo_local, wi_local);
-  if (!(value.f > 0).any()) return Rgb::Zero();
-
-  const Vec3 from = vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above);
-  const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
+Rgb PathTracer::LampLight(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler,
+                          RandomStream& random, uint64_t* traced) const {
+  const uint64_t lamp = random.NextBits();
+  const float u = random.Next(), v = random.Next();
+  const PathScene::LampSample sample = scene_.SampleLamp(vertex, sampler, lamp, u, v);
+  if (sample.light_pdf == 0) return Rgb::Zero();
   ++*traced;
-  if (tracer_.Occluded({from, 0, to - from, 1})) return Rgb::Zero();
-  const float light_pdf = lamp.light_density * distance2 * distance / std::abs(towards);
-  const float weight =
-      options_.light_sampling == LightSampling::kBoth ? PowerWeight(light_pdf, value.pdf) : 1;
-  return value.f * surfaces_[lamp.material].emission * (weight * std::abs(wi_local.z()) / light_pdf);
+  if (scene_.tracer().Occluded(sample.shadow)) return Rgb::Zero();
+  return options_.light_sampling == LightSampling::kBoth
+             ? Rgb(sample.value * PowerWeight(sample.light_pdf, sample.direction_pdf))
+             : sample.value;
 }
 
 Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emission,
                      const ReflectanceSampler* first, RandomStream& random, uint64_t* rays) const {
-  const bool by_light = options_.light_sampling != LightSampling::kDirections && !lamps_.empty();
+  const bool by_light = options_.light_sampling != LightSampling::kDirections && scene_.has_lamps();
   Rgb radiance = Rgb::Zero(), throughput = Rgb::Constant(1);
   RayHit hit = start;
   Vec3 wo = wo_start;
   uint64_t traced = 0;
   float direction_pdf = 0;  // of the direction that led here; 0: shadow rays could not have come here
   for (int bounce = 0; hit.hit(); ++bounce) {
-    const FaceShade& face = faces_[hit.face];
-    const Surface& surface = surfaces_[face.material];
-    const bool front = hit.side == Side::kFront;
+    const PathScene::Surface& surface = scene_.surface(hit.face);
     const bool forced = bounce == 0 && first;  // the caller says how this surface reflects
-    if (!front && !surface.double_sided && !forced) break;
+    if (hit.side == Side::kBack && !surface.double_sided && !forced) break;
     if (surface.emits && (bounce > 0 || count_emission)) {
       float weight = 1;
       if (direction_pdf > 0 && by_light) {
-        const float light_pdf = face.light_density * hit.t * hit.t / std::abs(face.normal.dot(wo));
-        weight = options_.light_sampling == LightSampling::kBoth ? PowerWeight(direction_pdf, light_pdf) : 0;
+        weight = options_.light_sampling == LightSampling::kBoth
+                     ? PowerWeight(direction_pdf, scene_.LightPdf(hit, wo))
+                     : 0;
       }
       radiance += throughput * (weight * surface.emission);
     }
     const ReflectanceSampler& sampler = forced ? *first : surface.sampler;
     if (sampler.black() || bounce >= options_.max_bounces) break;
 
-    const Vec3 normal = front ? face.normal : Vec3(-face.normal);
-    const Vec3 position = face.corner + hit.u * face.edge1 + hit.v * face.edge2;
-    Vec3 shading_normal = normal;
-    if (face.smooth != kNone) {
-      shading_normal = ShadingNormal(hit, face);
-      const float cosine = shading_normal.dot(wo);
-      if (cosine < kLeastCosine)
-        shading_normal = (shading_normal + (kLeastCosine - cosine) * wo).normalized();
-    }
-    const Frame frame(shading_normal);
-    const Vertex vertex{position, normal, frame, frame.ToLocal(wo), sampler};
-    if (by_light) radiance += throughput * LampLight(vertex, random, &traced);
+    const PathScene::Vertex vertex = scene_.VertexAt(hit, wo);
+    if (by_light) radiance += throughput * LampLight(vertex, sampler, random, &traced);
 
     const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
-    const SampledDirection next = sampler.Sample(vertex.wo_local, u1, u2, u3);
-    if (!(next.pdf > 0)) break;
+    const PathScene::Scattered next = scene_.Scatter(vertex, sampler, u1, u2, u3);
+    if (!next.alive) break;
     throughput *= next.weight;
-    Vec3 wi = frame.ToWorld(next.wi);
-    float above = wi.dot(normal);
-    if (next.delta && above < kLeastLift) {
-      // The reflection about an interpolated normal points into the face.
-      wi = (wi + (kLeastLift - above) * normal).normalized();
-      above = kLeastLift;
-    }
-    if (!(above * next.wi.z() > 0)) break;
     if (bounce >= kRouletteAfter) {
       const float survival = std::min(throughput.maxCoeff(), kMostSurvival);
       if (!(random.Next() < survival)) break;
       throughput /= survival;
     }
-    direction_pdf = next.delta ? 0 : next.pdf;
-    hit = tracer_.Intersect({position + normal * std::copysign(tracer_.epsilon(), above), 0, wi, kInfinity});
+    direction_pdf = next.pdf;
+    hit = scene_.tracer().Intersect(next.ray);
     ++traced;
-    wo = -wi;
+    wo = -next.ray.direction;
   }
   if (rays) *rays += traced;
   return radiance;
@@ -208,7 +78,7 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
 
 Rgb PathTracer::Radiance(const Ray& ray, RandomStream& random, uint64_t* rays) const {
   if (rays) ++*rays;
-  return RadianceFrom(tracer_.Intersect(ray), -ray.direction, random, rays);
+  return RadianceFrom(scene_.tracer().Intersect(ray), -ray.direction, random, rays);
 }
 
 Rgb PathTracer::RadianceFrom(const RayHit& hit, const Vec3& wo, RandomStream& random, uint64_t* rays) const {
@@ -247,7 +117,7 @@ Estimate PathTracer::Average(int samples, uint64_t seed, const Sample& sample) c
 
 Estimate PathTracer::ExitantRadiance(const SurfacePoint& at, const Vec3& wo, int samples,
                                      uint64_t seed) const {
-  const float cosine = faces_.at(at.face).normal.dot(wo) * (at.side == Side::kFront ? 1.0f : -1.0f);
+  const float cosine = scene_.FaceNormal(at.face).dot(wo) * (at.side == Side::kFront ? 1.0f : -1.0f);
   if (!(cosine > 0)) throw std::invalid_argument("wo is not above the side of the face it is to leave");
   const RayHit hit{at.face, 0, at.u, at.v, at.side};
   return Average(samples, seed, [&](RandomStream& random) {
@@ -259,7 +129,7 @@ Estimate PathTracer::Irradiance(const SurfacePoint& at, int samples, uint64_t se
   // The radiance of a white Lambertian surface in its place, times pi.
   static const ReflectanceSampler white(Lambert{Rgb::Constant(1)});
   const RayHit hit{at.face, 0, at.u, at.v, at.side};
-  const Vec3 wo = ShadingNormal(hit, faces_.at(at.face));
+  const Vec3 wo = scene_.ShadingNormal(hit);
   Estimate out = Average(samples, seed, [&](RandomStream& random) {
     return Walk(hit, wo, /*count_emission=*/false, &white, random, nullptr);
   });

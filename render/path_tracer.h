@@ -1,14 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
-#include <vector>
 
-#include "brdf/sampling.h"
-#include "render/alias_table.h"
-#include "scene/ray_tracer.h"
-#include "scene/scene.h"
+#include "render/path_scene.h"
 #include "solver/hash.h"
 
 namespace lobe {
@@ -50,10 +44,7 @@ struct Estimate {
 /// the letter, so they may reflect more than arrives where these do (docs/conventions.md#gltf-albedo).
 ///
 /// Backs are black and opaque; doubleSided faces have two sides, and thin sheets pass light from one of them
-/// to the other. Reflectance lives in the frame of the interpolated normal. Light does not leak through a
-/// faceted surface for that: a direction counts only if it is on the same side of the face itself as of the
-/// interpolated horizon (a mirror's is pushed up to the face). An eye below that horizon gets the normal
-/// turned until it is 0.01 above.
+/// to the other. Interpolated normals: render/path_scene.h.
 ///
 /// Keeps what it needs of the scene. Const methods may run in many threads.
 class PathTracer {
@@ -73,29 +64,13 @@ class PathTracer {
   /// Irradiance of a point, about its shading normal, W m^-2; of black backs too.
   Estimate Irradiance(const SurfacePoint& at, int samples, uint64_t seed = 1) const;
 
-  const RayTracer& tracer() const { return tracer_; }
+  const RayTracer& tracer() const { return scene_.tracer(); }
 
  private:
-  struct Surface {
-    ReflectanceSampler sampler;
-    Rgb emission;
-    bool emits, double_sided;
-  };
-  // What shading needs of a face: one cache line.
-  struct alignas(64) FaceShade {
-    Vec3 corner, edge1, edge2, normal;
-    uint32_t material;
-    float light_density = 0;         // per area, with which shadow rays end there; 0: not a lamp
-    uint32_t smooth = kNone;         // into corner_normals_; kNone: flat
-    bool emits[2] = {false, false};  // by side, if rays can meet that side
-  };
-
-  struct Vertex;
-
-  Vec3 ShadingNormal(const RayHit& hit, const FaceShade& face) const;
   // One sample of the light straight from lamps, scattered towards the vertex's wo; weighed against
   // directions.
-  Rgb LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const;
+  Rgb LampLight(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler, RandomStream& random,
+                uint64_t* traced) const;
   // One path. `first`: how the surface it starts from scatters, if not as its material says.
   Rgb Walk(const RayHit& start, const Vec3& wo, bool count_emission, const ReflectanceSampler* first,
            RandomStream& random, uint64_t* rays) const;
@@ -103,12 +78,7 @@ class PathTracer {
   Estimate Average(int samples, uint64_t seed, const Sample& sample) const;
 
   PathTracerOptions options_;
-  RayTracer tracer_;
-  std::vector<Surface> surfaces_;  // by material
-  std::vector<FaceShade> faces_;
-  std::vector<std::array<Vec3, 3>> corner_normals_;  // of smooth faces
-  std::vector<uint32_t> lamps_;                      // faces
-  AliasTable choose_lamp_;
+  PathScene scene_;
 };
 
 }  // namespace lobe

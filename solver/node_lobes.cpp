@@ -29,13 +29,12 @@ NodeLobes::NodeLobes(const Mesh& mesh, const std::vector<PartDegrees>& patch_deg
   bases_.resize(max_degree + 1);
   for (const auto& degrees : patch_degrees) {
     for (const int l_max : {degrees.base, degrees.gloss}) {
-      if (l_max < 0 || !zonal_flux_[l_max].empty()) continue;
+      if (l_max < 0 || bases_[l_max]) continue;
+      bases_[l_max] = std::make_shared<HemisphereBasis<float>>(l_max);
       const Eigen::VectorXd weights = FluxWeights(l_max);
       for (int l = 0; l <= l_max; l += 2)
         zonal_flux_[l_max].push_back(float(weights[CoefficientIndex(l, 0)]));
     }
-    const int l_max = degrees.max_degree();
-    if (l_max >= 0 && !bases_[l_max]) bases_[l_max] = std::make_shared<HemisphereBasis<float>>(l_max);
   }
 }
 
@@ -87,26 +86,29 @@ Rgb NodeLobes::Flux(uint32_t node) const {
   return flux;
 }
 
-Rgb NodeLobes::Radiance(uint32_t node, const Vec3& wo_local, float* basis) const {
+Rgb NodeLobes::Radiance(uint32_t node, const Vec3& wo_local, float* basis, LobePart part) const {
   const PartDegrees& d = degrees(node);
+  const int degree = part == LobePart::kBoth ? d.max_degree() : part == LobePart::kBase ? d.base : d.gloss;
+  if (degree < 0) return Rgb::Zero();
   if (d.diffuse()) {
-    if (d.base < 0) return Rgb::Zero();
     const float* v = base(node);
     return Rgb(v[0], v[1], v[2]) * (1.0f / std::sqrt(2.0f * std::numbers::pi_v<float>));
   }
   const Vec3 wo = BendToHorizon(wo_local);
-  bases_[d.max_degree()]->Evaluate(wo.x(), wo.y(), wo.z(), basis);
-  return RadianceFromBasis(node, basis);
+  bases_[degree]->Evaluate(wo.x(), wo.y(), wo.z(), basis);
+  return RadianceFromBasis(node, basis, part);
 }
 
-Rgb NodeLobes::RadianceFromBasis(uint32_t node, const float* basis) const {
+Rgb NodeLobes::RadianceFromBasis(uint32_t node, const float* basis, LobePart part) const {
   const PartDegrees& d = degrees(node);
   Rgb out = Rgb::Zero();
   const float *b = base(node), *g = gloss(node);
   const int base_count = d.base_count(), gloss_count = d.gloss_count();
+  const bool with_base = base_count > 0 && part != LobePart::kGloss;
+  const bool with_gloss = gloss_count > 0 && part != LobePart::kBase;
   for (int c = 0; c < 3; ++c) {
-    if (base_count > 0) out[c] += Dot(b + c * base_count, basis, base_count);
-    if (gloss_count > 0) out[c] += Dot(g + c * gloss_count, basis, gloss_count);
+    if (with_base) out[c] += Dot(b + c * base_count, basis, base_count);
+    if (with_gloss) out[c] += Dot(g + c * gloss_count, basis, gloss_count);
   }
   return out;
 }

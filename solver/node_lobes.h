@@ -24,6 +24,9 @@ struct PartDegrees {
   bool operator==(const PartDegrees&) const = default;
 };
 
+/// Which of a coated material's two parts is read.
+enum class LobePart { kBoth, kBase, kGloss };
+
 /// A field of lobes, one per node: reflected radiance leaving in every direction, in each node's own
 /// frame. A node's floats: base, channel by channel (c * base_count + k), then gloss likewise. A diffuse
 /// node is 3 floats. One allocation for all.
@@ -57,11 +60,12 @@ class NodeLobes {
   /// Integral of L cos over the hemisphere (W m^-2), base and gloss together.
   Rgb Flux(uint32_t node) const;
 
-  /// Radiance leaving `node` towards `wo_local` (bent to the horizon), base and gloss together; may be
-  /// negative where a cut-off lobe rings. `basis` is scratch of at least CoefficientCount(max_degree).
-  Rgb Radiance(uint32_t node, const Vec3& wo_local, float* basis) const;
-  /// The same for a basis already evaluated in this node's frame.
-  Rgb RadianceFromBasis(uint32_t node, const float* basis) const;
+  /// Radiance leaving `node` towards `wo_local` (bent to the horizon), base and gloss together or one of
+  /// them; may be negative where a cut-off lobe rings. `basis` is scratch of at least
+  /// CoefficientCount(max_degree).
+  Rgb Radiance(uint32_t node, const Vec3& wo_local, float* basis, LobePart part = LobePart::kBoth) const;
+  /// The same for a basis already evaluated in this node's frame, for this part or both.
+  Rgb RadianceFromBasis(uint32_t node, const float* basis, LobePart part = LobePart::kBoth) const;
 
  private:
   size_t offset(uint32_t node) const {

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "brdf/frame.h"
+#include "brdf/sampling.h"
+#include "render/alias_table.h"
+#include "scene/ray_tracer.h"
+#include "scene/scene.h"
+
+namespace lobe {
+
+/// A scene prepared for paths of light: what rays meet, how it scatters, and which points of lamps to aim at.
+/// The path tracer and the gathering modes of the renderer walk through here.
+///
+/// Reflectance lives in the frame of the interpolated normal. Light does not leak through a faceted surface
+/// for that: a direction counts only if it is on the same side of the face itself as of the interpolated
+/// horizon (a mirror's is pushed up to the face). An eye below that horizon gets the normal turned until it
+/// is 0.01 above. Keeps what it needs of the scene. Const methods may run in many threads.
+class PathScene {
+ public:
+  explicit PathScene(const Scene& scene);
+
+  struct Surface {
+    ReflectanceSampler sampler;
+    Rgb emission;
+    bool emits, double_sided;
+  };
+
+  /// Where a path scatters.
+  struct Vertex {
+    Vec3 position, normal;  ///< of the face, on the vertex's side
+    Frame frame;            ///< about the shading normal
+    Vec3 wo_local;
+  };
+
+  /// A way from a vertex to a point of a lamp.
+  struct LampSample {
+    Rgb value = Rgb::Zero();  ///< f |cos| emission / light_pdf if nothing is in the way; 0: no way
+    float light_pdf = 0;  ///< with which the lamp's point was aimed at, per steradian seen from the vertex
+    float direction_pdf = 0;  ///< with which `sampler` would have found it
+    Ray shadow;               ///< free if not Occluded
+  };
+
+  /// A ray that goes on from a vertex.
+  struct Scattered {
+    Rgb weight = Rgb::Zero();
+    float pdf = 0;       ///< of its direction; 0: shadow rays cannot come where it leads (ideal reflection)
+    bool alive = false;  ///< false: the path ends here
+    Ray ray;
+  };
+
+  const RayTracer& tracer() const { return tracer_; }
+  const Surface& surface(uint32_t face) const { return surfaces_[faces_[face].material]; }
+  uint32_t material(uint32_t face) const { return faces_[face].material; }
+  bool has_lamps() const { return !lamps_.empty(); }
+  /// Does this hit see emission?
+  bool Emits(const RayHit& hit) const {
+    const Surface& s = surface(hit.face);
+    return s.emits && (hit.side == Side::kFront || s.double_sided);
+  }
+  /// Per steradian seen from where `hit` was found along unit `-wo`, with which shadow rays end there; 0
+  /// where no lamp is.
+  float LightPdf(const RayHit& hit, const Vec3& wo) const {
+    const FaceShade& face = faces_[hit.face];
+    return face.light_density * hit.t * hit.t / std::abs(face.normal.dot(wo));
+  }
+  /// About `wo`, unit, pointing back along the ray.
+  Vertex VertexAt(const RayHit& hit, const Vec3& wo) const;
+  Vec3 FaceNormal(uint32_t face) const { return faces_[face].normal; }
+  Vec3 ShadingNormal(const RayHit& hit) const;  ///< on the side that was hit
+
+  /// Aims at a lamp drawn by power (`lamp`: all 64 bits uniform) and a point drawn evenly from it (u, v in
+  /// [0, 1)).
+  LampSample SampleLamp(const Vertex& vertex, const ReflectanceSampler& sampler, uint64_t lamp, float u,
+                        float v) const;
+  Scattered Scatter(const Vertex& vertex, const ReflectanceSampler& sampler, float u1, float u2,
+                    float u3) const;
+
+ private:
+  // What shading needs of a face: one cache line.
+  struct alignas(64) FaceShade {
+    Vec3 corner, edge1, edge2, normal;
+    uint32_t material;
+    float light_density = 0;         // per area, with which shadow rays end there; 0: not a lamp
+    uint32_t smooth = kNone;         // into corner_normals_; kNone: flat
+    bool emits[2] = {false, false};  // by side, if rays can meet that side
+  };
+
+  RayTracer tracer_;
+  std::vector<Surface> surfaces_;  // by material
+  std::vector<FaceShade> faces_;
+  std::vector<std::array<Vec3, 3>> corner_normals_;  // of smooth faces
+  std::vector<uint32_t> lamps_;                      // faces
+  AliasTable choose_lamp_;
+};
+
+/// Power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques", SIGGRAPH 1995): weight of a
+/// sample of density `mine` where `other` could have found it too.
+inline float PowerWeight(float mine, float other) {
+  const float ratio = other / mine;  // densities squared may overflow, their ratio may not
+  return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace lobe
