@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -17,20 +18,32 @@ namespace lobe {
 namespace {
 
 struct RenderFlags {
-  std::string solution, mode = "stored", filter = "box";
+  std::string solution, mode = "auto", filter = "box";
   std::vector<std::string> outputs;
   ViewFlags view;
   float exposure = 0;
   RenderOptions options;
 };
 
+constexpr struct {
+  const char* name;
+  RenderMode mode;
+} kModes[] = {{"stored", RenderMode::kStored},
+              {"direct", RenderMode::kDirect},
+              {"gather", RenderMode::kGather},
+              {"auto", RenderMode::kAuto}};
+
 /// Everything that can be said without opening a file.
 void Validate(RenderFlags* flags) {
   for (const std::string& output : flags->outputs) RequireExtension("-o", output, {".exr", ".png"});
   flags->view.Validate();
-  if (flags->mode != "stored") {
-    throw UsageError("--mode: '" + flags->mode + "' is unknown; 'stored' is expected");
+  const auto mode = std::find_if(std::begin(kModes), std::end(kModes),
+                                 [&](const auto& m) { return flags->mode == m.name; });
+  if (mode == std::end(kModes)) {
+    throw UsageError("--mode: '" + flags->mode +
+                     "' is unknown; 'stored', 'direct', 'gather' or 'auto' is expected");
   }
+  flags->options.mode = mode->mode;
   if (flags->filter == "blackman-harris") {
     flags->options.filter = PixelFilter::kBlackmanHarris;
   } else if (flags->filter != "box") {
@@ -137,9 +150,21 @@ void AddRenderCommand(CLI::App& app, Command* command) {
   render->add_option("--spp", flags->options.samples_per_pixel, "Eye rays per pixel, rounded up to a square")
       ->type_name("N")
       ->capture_default_str();
-  render->add_option("--mode", flags->mode, "How light is read: stored")
+  render->add_option("--mode", flags->mode, "How light is found: stored, direct, gather or auto")
       ->type_name("NAME")
       ->capture_default_str();
+  render
+      ->add_option("--light-samples", flags->options.light_samples,
+                   "Lamp samples per eye ray, in mode direct")
+      ->type_name("N")
+      ->capture_default_str();
+  render
+      ->add_option("--gather-samples", flags->options.gather_samples,
+                   "Directions traced per eye ray where gloss is gathered")
+      ->type_name("N")
+      ->capture_default_str();
+  render->add_flag("--gather-base", flags->options.gather_base,
+                   "In mode gather: trace the diffuse base too, of every material");
   render->add_option("--filter", flags->filter, "Pixel filter: box or blackman-harris (radius 1.5 pixels)")
       ->type_name("NAME")
       ->capture_default_str();

@@ -1,16 +1,12 @@
 #include "render/renderer.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include "brdf/frame.h"
 #include "render/eye_rays.h"
-#include "scene/mirror.h"
+#include "render/eye_shader.h"
 
 namespace lobe {
 std::string RenderOptions::Validate() const {
@@ -21,77 +17,30 @@ std::string RenderOptions::Validate() const {
     out << "samples per pixel " << samples_per_pixel << " is out of range: 1 to 65536 is expected";
   } else if (max_mirror_depth < 0 || max_mirror_depth > 1000) {
     out << "mirror depth " << max_mirror_depth << " is out of range: 0 to 1000 is expected";
+  } else if (light_samples < 1 || light_samples > 65536) {
+    out << "light samples " << light_samples << " is out of range: 1 to 65536 is expected";
+  } else if (gather_samples < 1 || gather_samples > 65536) {
+    out << "gather samples " << gather_samples << " is out of range: 1 to 65536 is expected";
   }
   return out.str();
 }
 
 struct Renderer::Impl {
   const Solution& solution;
-  RayTracer tracer;
+  EyeShader shader;
 
-  struct Sums {  // what a picture lost
-    double clamped = 0, cut_off = 0, shown = 0;
-    uint64_t rays = 0;
-  };
-
-  explicit Impl(const Solution& s) : solution(s), tracer(s.scene) {}
-
-  // Reflected light stored at a place, towards `wo`, unclamped.
-  Rgb Stored(const Mesh::Location& where, const Vec3& wo, float* basis) const {
-    if (where.element == kNone) return Rgb::Zero();
-    const Mesh& mesh = solution.mesh;
-    const bool planar = mesh.patches[mesh.element_patch[where.element]].planar;
-    const NodeWeights w = Interpolate(mesh, solution.hidden, where);
-    Rgb out = Rgb::Zero();
-    for (int k = 0; k < w.count; ++k) {
-      const bool same_basis = planar && k > 0 && !solution.total.degrees(w.node[k]).diffuse();
-      out +=
-          w.weight[k] * (same_basis ? solution.total.RadianceFromBasis(w.node[k], basis)
-                                    : solution.total.Radiance(
-                                          w.node[k], Frame(mesh.node_normal[w.node[k]]).ToLocal(wo), basis));
-    }
-    return out;
-  }
-
-  Rgb Shade(Ray ray, RayHit hit, int mirror_depth, float* basis, Sums& sums) const {
-    Rgb radiance = Rgb::Zero(), throughput = Rgb::Constant(1);
-    for (int depth = 0;; ++depth) {
-      if (!hit.hit()) return radiance;
-      const Face& face = solution.scene.faces[hit.face];
-      const Material& material = solution.scene.materials[face.material];
-      if (hit.side == Side::kBack && !material.double_sided) return radiance;
-      const Vec3 wo = -ray.direction.normalized();
-      const auto where = solution.mesh.Locate(hit.face, hit.side, hit.u, hit.v);
-      const Rgb stored = Stored(where, wo, basis);
-      const Rgb shown = stored.max(0.0f);
-      sums.clamped += (throughput * (shown - stored)).sum();
-      radiance += throughput * (material.emission + shown);
-
-      if (solution.material_kinds[face.material] != GlossKind::kMirror) return radiance;
-      const HitPoint at = FindHitPoint(solution.scene, solution.mesh, ray, hit, where);
-      const float cosine = std::clamp(wo.dot(at.normal), 0.0f, 1.0f);
-      throughput *= std::get<MetallicRoughness>(material.reflectance).Fresnel(cosine);
-      if ((throughput <= 0).all()) return radiance;
-      if (depth == mirror_depth) {
-        sums.cut_off += throughput.sum();
-        return radiance;
-      }
-      ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),
-             std::numeric_limits<float>::infinity()};
-      hit = tracer.Intersect(ray);
-      ++sums.rays;
-    }
-  }
+  explicit Impl(const Solution& s) : solution(s), shader(s) {}
 };
 
 Renderer::Renderer(const Solution& solution) : impl_(std::make_unique<Impl>(solution)) {}
 Renderer::~Renderer() = default;
 
 Rgb Renderer::Radiance(const Ray& ray) const {
-  std::vector<float> basis(kMaxBasisSize);
-  Impl::Sums sums;
-  return impl_->Shade(ray, impl_->tracer.Intersect(ray), RenderOptions{}.max_mirror_depth, basis.data(),
-                      sums);
+  EyeShader::Work work;
+  RenderOptions options;
+  options.mode = RenderMode::kStored;
+  const RayHit hit = impl_->shader.paths().tracer().Intersect(ray);
+  return impl_->shader.Shade(ray, hit, options, {}, /*split=*/false, work).Sum();
 }
 
 Image Renderer::Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
@@ -104,33 +53,43 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
   struct Scratch {
     std::vector<Ray> rays;
     std::vector<RayHit> hits;
-    std::vector<float> basis = std::vector<float>(kMaxBasisSize);
+    EyeShader::Work work;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  std::vector<Impl::Sums> sums(TileCount(options.width, options.height));
+  struct Sums {  // of a tile
+    double clamped = 0, cut_off = 0, shown = 0;
+    uint64_t rays = 0;
+  };
+  std::vector<Sums> sums(TileCount(options.width, options.height));
 
   const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
+    scratch.work.rays = 0;
+    scratch.work.cut_off = 0;
     scratch.rays.clear();
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) eye_rays.Append(x, y, &scratch.rays);
     }
     scratch.hits.resize(scratch.rays.size());
-    impl_->tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
-    Impl::Sums& sum = sums[tile.index];
-    sum.rays += scratch.rays.size();
+    impl_->shader.paths().tracer().Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+    Sums& sum = sums[tile.index];
     size_t ray = 0;
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
+        const uint64_t key = Mix(Mix(options.seed, 0x9a7e), uint64_t(y) * options.width + x);
         Rgb pixel = Rgb::Zero();
         for (int s = 0; s < samples; ++s, ++ray) {
-          pixel += impl_->Shade(scratch.rays[ray], scratch.hits[ray], options.max_mirror_depth,
-                                scratch.basis.data(), sum);
+          const EyeLight light = impl_->shader.Shade(scratch.rays[ray], scratch.hits[ray], options,
+                                                     {key, uint32_t(s)}, /*split=*/false, scratch.work);
+          pixel += light.Sum();
+          sum.clamped += light.clamped.sum();
         }
         image.at(x, y) = pixel / float(samples);
         sum.shown += pixel.sum();
       }
     }
+    sum.rays = scratch.rays.size() + scratch.work.rays;
+    sum.cut_off = scratch.work.cut_off;
   };
   const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
 

@@ -14,12 +14,24 @@ enum class PixelFilter {
   kBlackmanHarris,  ///< radius 1.5 pixels (Harris 1978, 4 terms): smoother edges
 };
 
+/// Where a picture's light comes from.
+enum class RenderMode {
+  kStored,  ///< lobes, read towards the eye
+  kDirect,  ///< lamps are sampled at every eye ray's end: crisp shadows; the rest is read from lobes
+  kGather,  ///< gloss is traced from there until it meets lobes; the base is read
+  kAuto,    ///< gather for materials too sharp for their lobes, stored for the others
+};
+
 struct RenderOptions {
   int width = 512, height = 512;
   /// Eye rays per pixel, stratified; rounded up to a square.
   int samples_per_pixel = 16;
   PixelFilter filter = PixelFilter::kBox;
   int max_mirror_depth = 16;
+  RenderMode mode = RenderMode::kAuto;
+  int light_samples = 1;     ///< per eye ray, in mode direct
+  int gather_samples = 4;    ///< per eye ray and gathered surface
+  bool gather_base = false;  ///< in mode gather: trace all that is reflected, of every material
   uint64_t seed = 1;
   /// A sentence saying what is out of range, or an empty string.
   std::string Validate() const;
@@ -40,7 +52,6 @@ class Renderer {
   explicit Renderer(const Solution& solution);
   ~Renderer();
 
-  /// Stored mode: nearest hit, its three nodes' lobes read towards the eye, mirrors traced recursively.
   /// `options` and `view` must agree on the size; throws std::invalid_argument if options.Validate()
   /// complains. Filters are sampled by importance, so every eye ray counts the same. `progress` gets 0..1
   /// from one thread at a time; if it returns false the picture is abandoned (report->complete). Same bits

@@ -3,15 +3,19 @@
 #include <array>
 #include <cstdint>
 
+#include "solver/hash.h"
+
 namespace lobe {
 
 /// Points of Sobol's two-dimensional (0, 2)-sequence, Owen-scrambled: every aligned run of 2^k of them has
 /// one point in every elementary interval of area 2^-k, and each point alone is uniform. Means over them
-/// converge faster than over random points, and sequences of different seeds are independent.
-/// Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
+/// converge faster than over random points. Sequences of different seeds are independent, in their order too,
+/// so that several serve as the dimensions of one point. Burley, "Practical Hash-based Owen Scrambling",
+/// JCGT 9(4), 2020.
 class SobolPoints {
  public:
-  explicit SobolPoints(uint64_t seed) : x_seed_(uint32_t(seed)), y_seed_(uint32_t(seed >> 32)) {}
+  explicit SobolPoints(uint64_t seed)
+      : order_seed_(uint32_t(Mix(seed))), x_seed_(uint32_t(seed)), y_seed_(uint32_t(seed >> 32)) {}
 
   /// Point `index`, both in [0, 1).
   std::array<float, 2> At(uint32_t index) const {
@@ -21,6 +25,8 @@ class SobolPoints {
   /// The same as fixed point numbers, 32 bits after the point.
   std::array<uint32_t, 2> BitsAt(uint32_t index) const {
     // Scrambling works on reversed bits, in which the first dimension, van der Corput's, is the index itself.
+    // Scrambling the index first shuffles aligned runs of 2^k.
+    index = Reverse(Scramble(Reverse(index), order_seed_));
     return {Reverse(Scramble(index, x_seed_)), Reverse(Scramble(Reverse(SecondDimension(index)), y_seed_))};
   }
 
@@ -51,7 +57,7 @@ class SobolPoints {
     return v;
   }
 
-  uint32_t x_seed_, y_seed_;
+  uint32_t order_seed_, x_seed_, y_seed_;
 };
 
 }  // namespace lobe

@@ -12,8 +12,15 @@ constexpr double kDarkest = 0.05;
 
 }  // namespace
 
-Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area)
+Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
+                     const std::vector<bool>& sharp)
     : mesh_(mesh), light_(light), area_(area) {
+  for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
+    // Nodes of a curved patch have frames of their own, in which coefficients do not compare; flux does.
+    const auto& patch = mesh.patches[p];
+    by_flux_.push_back(light.patch_degrees(p).diffuse() || !patch.planar ||
+                       (!sharp.empty() && sharp[patch.material]));
+  }
   double sum = 0, whole = 0;
   const double one = 1;
   for (uint32_t n = 0; n < mesh.node_count(); ++n) {
@@ -26,8 +33,8 @@ Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector
 }
 
 Roughness::Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
-                     const std::vector<float>& near)
-    : Roughness(mesh, light, area) {
+                     const std::vector<bool>& sharp, const std::vector<float>& near)
+    : Roughness(mesh, light, area, sharp) {
   near_ = &near;
 }
 
@@ -46,8 +53,7 @@ double Roughness::Relative(double difference, const uint32_t ends[2]) const {
 double Roughness::Norm(const uint32_t* nodes, const double* weights, int count) const {
   const PartDegrees& d = light_.degrees(nodes[0]);
   double sum = 0;
-  if (d.diffuse() || !mesh_.patches[mesh_.node_patch[nodes[0]]].planar) {
-    // Nodes of a curved patch have frames of their own, in which coefficients do not compare; flux does.
+  if (by_flux_[mesh_.node_patch[nodes[0]]]) {
     Eigen::Array3d flux = Eigen::Array3d::Zero();
     for (int i = 0; i < count; ++i) flux += weights[i] * light_.Flux(nodes[i]).cast<double>();
     return std::sqrt((flux / std::numbers::pi).square().mean());

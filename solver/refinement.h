@@ -32,12 +32,14 @@ struct RefineOptions {
 /// brightness thereabouts.
 class Roughness {
  public:
-  /// `light` on the nodes of `mesh`, `area` per node (0: leave the node out).
-  Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area);
+  /// `light` on the nodes of `mesh`, `area` per node (0: leave the node out). Patches of `sharp` materials
+  /// (per material) are compared by flux alone: what the eye sees of their gloss is traced, not read.
+  Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
+            const std::vector<bool>& sharp = {});
   /// With the eye on contacts: only what is `near` them (NearContacts) counts, in proportion, and against the
   /// brightness of the place alone: beside a contact it may be dark.
   Roughness(const Mesh& mesh, const NodeLobes& light, const std::vector<double>& area,
-            const std::vector<float>& near);
+            const std::vector<bool>& sharp, const std::vector<float>& near);
 
   /// First guess, per element: the largest difference between ends of an edge, where above `error`.
   std::vector<float> BetweenEnds(double error) const;
@@ -54,6 +56,7 @@ class Roughness {
   const Mesh& mesh_;
   const NodeLobes& light_;
   const std::vector<double>& area_;
+  std::vector<bool> by_flux_;  // per patch
   const std::vector<float>* near_ = nullptr;
   double mean_ = 0;  // rms brightness of the scene
 };

@@ -109,7 +109,6 @@ class ProgressiveSolver {
     lap(split.links);
     through = through && EmissionByMirrors();
     if (through) {
-      s_.direct = s_.total;
       s_.stop_reason = Iterate();
       lap(split.reflection);
     } else {
@@ -242,7 +241,7 @@ class ProgressiveSolver {
     Refinement refined;
     for (int round = 0; round < options.rounds && options.error > 0; ++round) {
       const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
-      const Roughness roughness(s_.mesh, gained_, area);
+      const Roughness roughness(s_.mesh, gained_, area, SharpMaterials());
       refined = Refined(round == 0 ? roughness.BetweenEnds(options.error)
                                    : roughness.AtMidpoints(refined, options.error));
       if (refined.made.empty()) break;
@@ -254,6 +253,12 @@ class ProgressiveSolver {
     s_.total = s_.direct = s_.unshot = NodeLobes(s_.mesh, degrees);
     FindOpposite();
     return true;
+  }
+
+  std::vector<bool> SharpMaterials() const {
+    std::vector<bool> sharp;
+    for (const GlossKind kind : s_.material_kinds) sharp.push_back(kind == GlossKind::kSharp);
+    return sharp;
   }
 
   // A finer mesh, as far as nodes and memory allow.
@@ -318,7 +323,7 @@ class ProgressiveSolver {
         for (size_t i = 0; i < to.size(); ++i) to[i] += from[i];
       }
       const std::vector<double> area = NodeAreas(s_.mesh, s_.hidden);
-      const Roughness roughness(s_.mesh, light, area, near);
+      const Roughness roughness(s_.mesh, light, area, SharpMaterials(), near);
       std::vector<float> priority(s_.mesh.element_count(), 0.0f);
       // Halving an element tells about its longest edge only, so all edges are looked at first.
       if (round < kContactEndRounds) priority = roughness.BetweenEnds(kContactEnds * error);
@@ -396,6 +401,7 @@ class ProgressiveSolver {
                                      [](const MaterialLobes& m) { return m.kind() == GlossKind::kMirror; });
     phase_ = Phase::kMirrors;
     if (by_links_ && mirrors) {
+      s_.direct = Straight();
       if (!planar_mirrors_.empty()) {
         const ShootingField images(s_.mesh, emitters_, planar_mirrors_);
         if (!AddGathered([&] { return GatherShot(0, images, s_.options.light_samples, AllNodes()); }))
@@ -404,7 +410,19 @@ class ProgressiveSolver {
       if (!AddGathered([&] { return GatherLinked(0, LinkField(s_.scene, s_.mesh), 1); })) return false;
     }
     Commit(0, {}, uint32_t(emitters_.size()));
+    if (!(by_links_ && mirrors)) s_.direct = s_.total;
     return true;
+  }
+
+  // What was gained so far, as Commit will add it.
+  NodeLobes Straight() {
+    NodeLobes straight = gained_;
+    PassThrough(straight);
+    for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
+      const auto lobe = straight.all(n);
+      if (s_.hidden[n]) std::fill(lobe.begin(), lobe.end(), 0.0f);
+    }
+    return straight;
   }
 
   // gather() replaces gained_ and got_; this adds to what they held.
@@ -562,7 +580,7 @@ class ProgressiveSolver {
   // Makes a gathered step part of the solution: total = what was gathered of all that was ever shot, and
   // unshot = total - all that was ever shot. What was shot ahead is so taken back.
   void Commit(int step, const std::vector<std::array<float, 3>>& ahead, uint32_t shooters) {
-    PassThrough();
+    PassThrough(gained_);
     const bool all_was_shot = by_links_ || s_.options.step_fraction >= 1;
     flux_.resize(s_.mesh.node_count());
     tbb::parallel_for(uint32_t(0), uint32_t(s_.mesh.node_count()), [&](uint32_t n) {
@@ -616,14 +634,14 @@ class ProgressiveSolver {
   }
 
   // What arrived on one side of a translucent sheet leaves the other, in every direction alike.
-  void PassThrough() {
+  void PassThrough(NodeLobes& gained) const {
     for (uint32_t n = 0; n < opposite_.size(); ++n) {
       const uint32_t from = opposite_[n];
       if (from == kNone || s_.hidden[from]) continue;
-      const int count = gained_.degrees(n).base_count();
+      const int count = gained.degrees(n).base_count();
       for (int c = 0; c < 3; ++c) {
         // Of radiance flux / pi, as the coefficient of the constant function 1 / sqrt(2 pi).
-        gained_.base(n)[c * count] += got_[from].through[c] * std::sqrt(2.0f / std::numbers::pi_v<float>);
+        gained.base(n)[c * count] += got_[from].through[c] * std::sqrt(2.0f / std::numbers::pi_v<float>);
       }
     }
   }

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/path_scene.h"
+#include "render/renderer.h"
+#include "render/stored_light.h"
+#include "solver/hash.h"
+
+namespace lobe {
+
+/// What the light an eye ray brings is made of. Their sum is the picture; `clamped` is a part of it.
+struct EyeLight {
+  Rgb direct = Rgb::Zero();    ///< emission seen, and lamps' light reflected once by what the ray met
+  Rgb indirect = Rgb::Zero();  ///< the rest of what that reflects
+  Rgb specular = Rgb::Zero();  ///< everything by way of ideal mirrors
+  Rgb clamped = Rgb::Zero();   ///< made by showing negative values of lobes as zero
+  Rgb Sum() const { return direct + indirect + specular; }
+};
+
+/// Which of a pixel's samples an eye ray is: what its random numbers follow from.
+struct EyeSample {
+  uint64_t pixel_key;
+  uint32_t index;
+};
+
+/// Finds the light a single eye ray brings, in every mode that reads a solution. Keeps references to the
+/// solution. Const methods may run in many threads, each with a Work of its own.
+class EyeShader {
+ public:
+  explicit EyeShader(const Solution& solution);
+
+  /// A thread's scratch, and what it counts.
+  struct Work {
+    std::vector<float> basis = std::vector<float>(kMaxBasisSize);
+    uint64_t rays = 0;
+    double cut_off = 0;  ///< throughput of ways that were not followed further, summed over channels
+  };
+
+  /// `split`: keep direct and indirect apart also where that costs a second reading of lobes; else what is
+  /// read as one is told as indirect.
+  EyeLight Shade(const Ray& ray, const RayHit& hit, const RenderOptions& options, const EyeSample& sample,
+                 bool split, Work& work) const;
+
+  /// How light is found on what an eye ray meets.
+  enum class Reading {
+    kStored,     ///< lobes hold it
+    kDirect,     ///< lamps are sampled, the rest is read
+    kGather,     ///< gloss is traced until it meets lobes, the base is read
+    kGatherAll,  ///< the base is traced, too
+  };
+  Reading ReadingOf(uint32_t material, const RenderOptions& options) const;
+
+  const PathScene& paths() const { return paths_; }
+  const StoredLight& stored() const { return stored_; }
+
+ private:
+  struct Way;
+  struct Task;
+
+  void Follow(const Ray& ray, const RayHit& hit, const Way& way, Task& task) const;
+  void Read(const Mesh::Location& where, const Vec3& wo, bool split, const Way& way, Task& task) const;
+  void Sample(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler, int samples, bool gather,
+              const Way& way, Task& task) const;
+
+  const Solution& solution_;
+  PathScene paths_;
+  StoredLight stored_;
+  std::vector<ReflectanceSampler> gloss_;  // by material
+};
+
+}  // namespace lobe
