@@ -20,8 +20,7 @@ Rgb FresnelAtHalf(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) 
 
 // What the coat lets through to the base and back out again.
 Rgb UnderTheCoat(const MetallicRoughness& m, const Vec3d& wi, const Vec3d& wo) {
-  const Rgb fresnel = FresnelAtHalf(m, wi, wo);
-  return m.has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
+  return m.UnderCoat(FresnelAtHalf(m, wi, wo));
 }
 
 // Which part of each model is smooth ("base") and which is the coat ("gloss").
@@ -65,16 +64,18 @@ struct Gloss {
 }  // namespace
 
 Rgb MetallicRoughness::DiffuseColor() const {
-  return base_color * ((1.0f - metallic) * (1.0f - diffuse_transmission));
+  return base_color * ((1.0f - metallic) * (1.0f - transmission) * (1.0f - diffuse_transmission));
 }
 
 Rgb MetallicRoughness::TransmissionColor() const {
-  return diffuse_transmission_color * ((1.0f - metallic) * diffuse_transmission);
+  return diffuse_transmission_color * ((1.0f - metallic) * (1.0f - transmission) * diffuse_transmission);
 }
 
-Rgb MetallicRoughness::F0() const {
+Rgb MetallicRoughness::GlassColor() const { return base_color * ((1.0f - metallic) * transmission); }
+
+Rgb MetallicRoughness::F0(float outer_ior) const {
   // Also right for KHR_materials_ior's "ior 0", which asks for f0 = 1.
-  const float r = (ior - 1.0f) / (ior + 1.0f);
+  const float r = (ior - outer_ior) / (ior + outer_ior);
   const Rgb dielectric = (r * r * specular_color).min(1.0f) * specular;
   return dielectric + metallic * (base_color - dielectric);
 }
@@ -84,6 +85,10 @@ float MetallicRoughness::F90() const { return specular + metallic * (1.0f - spec
 Rgb MetallicRoughness::Fresnel(float cos_theta) const {
   const Rgb f0 = F0();
   return f0 + (F90() - f0) * float(Pow5(1.0 - cos_theta));
+}
+
+Rgb MetallicRoughness::UnderCoat(const Rgb& fresnel) const {
+  return has_specular ? Rgb::Constant(1.0f - fresnel.maxCoeff()) : Rgb(1.0f - fresnel);
 }
 
 Rgb EvaluateBase(const Reflectance& r, const Vec3d& wi, const Vec3d& wo) {
@@ -105,9 +110,12 @@ bool Transmits(const Reflectance& r) {
   const auto* m = std::get_if<MetallicRoughness>(&r);
   if (!m) return false;
   // F0 <= F90, so that a coat that reflects everything at normal incidence does so at every angle.
-  const Rgb f0 = m->F0();
-  const Rgb through = m->has_specular ? Rgb::Constant(1.0f - f0.maxCoeff()) : Rgb(1.0f - f0);
-  return (m->TransmissionColor() * through > 0).any();
+  return (m->TransmissionColor() * m->UnderCoat(m->F0()) > 0).any();
+}
+
+bool IsGlass(const Reflectance& r) {
+  const auto* m = std::get_if<MetallicRoughness>(&r);
+  return m && m->roughness < kMirrorRoughness && (m->GlassColor() * m->UnderCoat(m->F0()) > 0).any();
 }
 
 double GgxD(double cos_h, double alpha) {
@@ -138,6 +146,7 @@ std::string Describe(const Reflectance& r) {
     const auto& m = std::get<MetallicRoughness>(r);
     words << "ggx roughness " << m.roughness;
     if (m.metallic < 1) words << " metallic " << m.metallic;
+    if (IsGlass(r)) words << (m.thickness > 0 ? " glass ior " : " pane ior ") << m.ior;
   }
   return words.str();
 }

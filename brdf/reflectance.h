@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <variant>
 
@@ -32,8 +33,9 @@ struct Ward {
   float alpha = 0.2f;
 };
 
-/// glTF 2.0 metallic-roughness, appendix B.3.5, with KHR_materials_specular, KHR_materials_ior and
-/// KHR_materials_diffuse_transmission (a thin translucent sheet: paper, a lampshade, a leaf).
+/// glTF 2.0 metallic-roughness, appendix B.3.5, with KHR_materials_specular, KHR_materials_ior,
+/// KHR_materials_diffuse_transmission (a thin translucent sheet: paper, a lampshade, a leaf), and
+/// KHR_materials_transmission with KHR_materials_volume (clear glass: a thin pane, or a solid body).
 struct MetallicRoughness {
   Rgb base_color = Rgb::Constant(1);
   float metallic = 1;
@@ -46,13 +48,27 @@ struct MetallicRoughness {
   /// reflecting it, 0..1.
   float diffuse_transmission = 0;
   Rgb diffuse_transmission_color = Rgb::Constant(1);
+  /// Share of the light under the coat of a dielectric that goes on without being scattered, 0..1, coloured
+  /// by base_color. Only ideal glass, roughness below kMirrorRoughness, lets it on: scene/specular.h says
+  /// where.
+  float transmission = 0;
+  /// 0: a thin pane, through which light goes straight on. More: the surface of a solid body, its front
+  /// outside; how much more does not matter, since rays measure their ways inside.
+  float thickness = 0;
+  /// White light is left with this colour after `attenuation_distance` metres inside the body.
+  Rgb attenuation_color = Rgb::Constant(1);
+  float attenuation_distance = std::numeric_limits<float>::infinity();
 
   Rgb DiffuseColor() const;       ///< c_diff, of it what stays on this side
   Rgb TransmissionColor() const;  ///< what c_diff is for the other side
-  Rgb F0() const;                 ///< reflectance of the coat at normal incidence
-  float F90() const;              ///< and at grazing
+  Rgb GlassColor() const;         ///< what goes on through ideal glass of what gets under the coat
+  /// Reflectance of the coat at normal incidence, where the medium before it has the index `outer_ior`.
+  Rgb F0(float outer_ior = 1) const;
+  float F90() const;  ///< and at grazing
   /// Schlick: f0 + (f90 - f0)(1 - cos)^5.
   Rgb Fresnel(float cos_theta) const;
+  /// What a coat that reflects `fresnel` lets through to what lies under it.
+  Rgb UnderCoat(const Rgb& fresnel) const;
 };
 
 using Reflectance = std::variant<Lambert, Phong, Ward, MetallicRoughness>;
@@ -72,6 +88,9 @@ Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
 Rgb EvaluateTransmission(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
 /// Does EvaluateTransmission differ from 0 anywhere?
 bool Transmits(const Reflectance& r);
+/// Ideal glass: does light go on through it without being scattered? Not part of any Evaluate..., being a
+/// delta.
+bool IsGlass(const Reflectance& r);
 
 /// GGX distribution (Walter et al., EGSR 2007, eq. 33) at half-vector cosine `cos_h`, sr^-1.
 double GgxD(double cos_h, double alpha);

@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include "scene/gltf_nodes.h"
 #include "scene/gltf_scene.h"
 
@@ -9,6 +11,8 @@ namespace {
 constexpr const char* kBrdfExtension = "LOBE_materials_brdf";
 
 constexpr const char* kTransmissionExtension = "KHR_materials_diffuse_transmission";
+constexpr const char* kGlassExtension = "KHR_materials_transmission";
+constexpr const char* kVolumeExtension = "KHR_materials_volume";
 
 void WarnOfTextures(const GltfJson& place, const GltfJson& material, std::vector<std::string>* warnings) {
   for (const auto& [key, value] : place.value().items()) {
@@ -31,6 +35,38 @@ Reflectance ReadBrdfExtension(const GltfJson& brdf) {
     return Ward{albedo, static_cast<float>(brdf.Number("alpha", Ward{}.alpha, 1e-3, 1))};
   }
   brdf.FailValue("model", "\"lambert\", \"phong\" or \"ward\"");
+}
+
+// Needs the rest of the material, which decides whether any light goes through.
+void ReadGlass(const GltfJson& material, MetallicRoughness* m, std::vector<std::string>* warnings) {
+  const GltfJson glass = material.Extension(kGlassExtension);
+  m->transmission = static_cast<float>(glass.Number("transmissionFactor", 0, 0, 1));
+  WarnOfTextures(glass, material, warnings);
+  MetallicRoughness smooth = *m;
+  smooth.roughness = 0;
+  if (m->transmission == 0 || !IsGlass(smooth)) return;
+
+  if (m->roughness >= kMirrorRoughness) {
+    std::ostringstream sentence;
+    sentence << material.element() << ": it transmits light with roughness " << m->roughness
+             << ", but only ideal glass is read; it is taken as roughness 0";
+    warnings->push_back(sentence.str());
+    m->roughness = 0;
+  }
+  const GltfJson volume = material.Extension(kVolumeExtension);
+  m->thickness = static_cast<float>(volume.Number("thicknessFactor", 0, 0));
+  if (volume.Has("attenuationDistance")) {
+    m->attenuation_distance = static_cast<float>(volume.Number("attenuationDistance", 0));
+    if (!(m->attenuation_distance > 0)) volume.FailValue("attenuationDistance", "more than 0");
+  }
+  // Above 1 light would grow on its way.
+  m->attenuation_color = volume.Color("attenuationColor", Rgb::Constant(1), 0, 1);
+  WarnOfTextures(volume, material, warnings);
+  if (m->thickness > 0 && m->diffuse_transmission > 0) {
+    m->diffuse_transmission = 0;
+    warnings->push_back(material.element() + ": " + kTransmissionExtension +
+                        " is read for thin sheets only; " + "this solid body is taken without it");
+  }
 }
 
 MetallicRoughness ReadMetallicRoughness(const GltfJson& material, std::vector<std::string>* warnings) {
@@ -60,6 +96,7 @@ MetallicRoughness ReadMetallicRoughness(const GltfJson& material, std::vector<st
   // Above 1 the sheet would gain energy.
   m.diffuse_transmission_color = transmission.Color("diffuseTransmissionColorFactor", Rgb::Constant(1), 0, 1);
   WarnOfTextures(transmission, material, warnings);
+  ReadGlass(material, &m, warnings);
   return m;
 }
 
@@ -76,9 +113,10 @@ void WarnOfTheRest(const GltfJson& material, const Material& read, std::vector<s
       continue;
     }
     // Our own models have no transmission.
-    const bool transmission = name == kTransmissionExtension;
+    const bool transmission = name == kTransmissionExtension || name == kGlassExtension;
     if (transmission && std::holds_alternative<MetallicRoughness>(read.reflectance)) continue;
-    const bool opaque = !read.transmits() && (transmission || name == "KHR_materials_transmission");
+    if (name == kVolumeExtension && read.glass()) continue;
+    const bool opaque = !read.transmits() && transmission;
     warnings->push_back(material.element() + ": " + name + " is not read; " +
                         (opaque ? "the surface is opaque" : "the material is taken without it"));
   }
@@ -104,9 +142,10 @@ std::vector<Material> ReadMaterials(const GltfFile& file, std::vector<std::strin
     } else {
       material.reflectance = ReadMetallicRoughness(json, warnings);
     }
-    if (material.transmits() && !material.double_sided) {
+    if ((material.transmits() || material.pane()) && !material.double_sided) {
       material.double_sided = true;
-      warnings->push_back(json.element() + ": it lets light through by " + kTransmissionExtension +
+      warnings->push_back(json.element() + ": it lets light through by " +
+                          (material.pane() ? kGlassExtension : kTransmissionExtension) +
                           " but is not doubleSided; it is taken as double-sided");
     }
     WarnOfTheRest(json, material, warnings);

@@ -57,6 +57,18 @@ struct WriteReflectance {
           {"diffuseTransmissionFactor", JsonNumber(m.diffuse_transmission)},
           {"diffuseTransmissionColorFactor", JsonColour(m.diffuse_transmission_color)}};
     }
+    if (m.transmission != 0) {
+      Extension("KHR_materials_transmission") = {{"transmissionFactor", JsonNumber(m.transmission)}};
+    }
+    if (m.thickness != 0 || (m.attenuation_color != 1).any() || std::isfinite(m.attenuation_distance)) {
+      json& volume = Extension("KHR_materials_volume");
+      volume = {{"thicknessFactor", JsonNumber(m.thickness)},
+                {"attenuationColor", JsonColour(m.attenuation_color)}};
+      // Without the entry it is infinite, which JSON cannot say.
+      if (std::isfinite(m.attenuation_distance)) {
+        volume["attenuationDistance"] = JsonNumber(m.attenuation_distance);
+      }
+    }
   }
 
  private:

@@ -51,7 +51,10 @@ RepeatedFaces FindRepeatedFaces(const Scene& scene) {
     repeated.twins.resize(count);
     RepeatedFaces::Twin& twin = repeated.twins[entries[first].face];
     if (entries[i].odd == entries[first].odd || twin.face != kNone) continue;
-    const auto transmits = [&](const Entry& e) { return scene.material(scene.faces[e.face]).transmits(); };
+    const auto transmits = [&](const Entry& e) {
+      const Material& material = scene.material(scene.faces[e.face]);
+      return material.transmits() || material.pane();
+    };
     if (transmits(entries[first]) && transmits(entries[i])) continue;
     twin.face = entries[i].face;
     for (int k = 0; k < 3; ++k) twin.corner[entries[i].corner[k]] = entries[first].corner[k];

@@ -18,8 +18,8 @@ struct RepeatedFaces {
   };
   std::vector<uint32_t> kept;  ///< faces to trace, ascending: of equal ones the first
   std::vector<Twin> twins;     ///< by face: of a kept one the first that winds the other way. Empty if all
-                               ///< faces are kept. A translucent sheet modelled twice has none: it is one
-                               ///< sheet, and light that goes through the first has to come out of it
+                            ///< faces are kept. A translucent sheet or a pane modelled twice has none: it is
+                            ///< one sheet, and light that goes through the first has to come out of it
 };
 
 /// O(n log n) in the number of faces.

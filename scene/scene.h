@@ -21,6 +21,12 @@ struct Material {
   bool double_sided = false;
   bool emits() const { return (emission > 0).any(); }
   bool transmits() const { return Transmits(reflectance); }
+  bool glass() const { return IsGlass(reflectance); }  ///< light goes on through it, unscattered
+  bool pane() const { return glass() && !thick(); }    ///< glass so thin that it goes straight on
+  bool body() const { return glass() && thick(); }     ///< surface of solid glass, its front outside
+
+ private:
+  bool thick() const { return std::get<MetallicRoughness>(reflectance).thickness > 0; }
 };
 
 /// An input triangle in world space, the thing rays hit. Counter-clockwise seen from its front.

@@ -503,22 +503,100 @@ TEST(GltfMaterialTest, DiffuseTransmissionIsReadAndTakenAsDoubleSided) {
   EXPECT_FALSE(opaque.double_sided);
   EXPECT_EQ(warnings, std::vector<std::string>{});
 
-  const Material thin =
-      ReadMaterial(sheet({{"diffuseTransmissionFactor", 1},
-                          {"diffuseTransmissionTexture", {{"index", 0}}},
-                          {"diffuseTransmissionColorTexture", {{"index", 0}}}},
-                         {{"extensions", {{"KHR_materials_transmission", json::object()}}}}),
-                   &warnings);
+  const Material thin = ReadMaterial(sheet({{"diffuseTransmissionFactor", 1},
+                                            {"diffuseTransmissionTexture", {{"index", 0}}},
+                                            {"diffuseTransmissionColorTexture", {{"index", 0}}}},
+                                           {{"extensions", {{"KHR_materials_volume", json::object()}}}}),
+                                     &warnings);
   EXPECT_TRUE(thin.double_sided);
   std::sort(warnings.begin(), warnings.end());
-  EXPECT_EQ(
-      warnings,
-      (std::vector<std::string>{
-          "material 0 'shade': KHR_materials_transmission is not read; the material is taken without it",
-          "material 0 'shade': diffuseTransmissionColorTexture is not read; its factor is used",
-          "material 0 'shade': diffuseTransmissionTexture is not read; its factor is used",
-          "material 0 'shade': it lets light through by KHR_materials_diffuse_transmission but is not "
-          "doubleSided; it is taken as double-sided"}));
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{
+                "material 0 'shade': KHR_materials_volume is not read; the material is taken without it",
+                "material 0 'shade': diffuseTransmissionColorTexture is not read; its factor is used",
+                "material 0 'shade': diffuseTransmissionTexture is not read; its factor is used",
+                "material 0 'shade': it lets light through by KHR_materials_diffuse_transmission but is not "
+                "doubleSided; it is taken as double-sided"}));
+}
+
+json GlassMaterial(json transmission, json volume, json rest = json::object()) {
+  rest["name"] = "glass";
+  rest["pbrMetallicRoughness"]["metallicFactor"] = 0;
+  if (!rest["pbrMetallicRoughness"].contains("roughnessFactor")) {
+    rest["pbrMetallicRoughness"]["roughnessFactor"] = 0;
+  }
+  rest["extensions"]["KHR_materials_transmission"] = std::move(transmission);
+  if (!volume.is_null()) rest["extensions"]["KHR_materials_volume"] = std::move(volume);
+  return rest;
+}
+
+TEST(GltfMaterialTest, GlassIsReadAsABodyOrAsAPane) {
+  std::vector<std::string> warnings;
+  const Material body = ReadMaterial(
+      GlassMaterial(
+          {{"transmissionFactor", 0.75}},
+          {{"thicknessFactor", 0.5}, {"attenuationDistance", 0.25}, {"attenuationColor", {0.5, 0.75, 1}}},
+          {{"extensions", {{"KHR_materials_ior", {{"ior", 1.33}}}}}}),
+      &warnings);
+  const auto& m = std::get<MetallicRoughness>(body.reflectance);
+  EXPECT_EQ(m.transmission, 0.75f);
+  EXPECT_EQ(m.thickness, 0.5f);
+  EXPECT_EQ(m.attenuation_distance, 0.25f);
+  EXPECT_TRUE((m.attenuation_color == Rgb(0.5f, 0.75f, 1)).all());
+  EXPECT_EQ(m.ior, 1.33f);
+  EXPECT_TRUE(body.glass() && body.body() && !body.pane());
+  EXPECT_FALSE(body.double_sided) << "its back is the inside";
+  EXPECT_EQ(warnings, std::vector<std::string>{});
+
+  const Material pane = ReadMaterial(
+      GlassMaterial({{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}}, nullptr),
+      &warnings);
+  EXPECT_TRUE(pane.pane() && pane.double_sided);
+  EXPECT_FALSE(std::isfinite(std::get<MetallicRoughness>(pane.reflectance).attenuation_distance));
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{
+                "material 0 'glass': transmissionTexture is not read; its factor is used",
+                "material 0 'glass': it lets light through by KHR_materials_transmission but is not "
+                "doubleSided; it is taken as double-sided"}));
+}
+
+TEST(GltfMaterialTest, RoughGlassIsTakenAsClearAndSaysSo) {
+  std::vector<std::string> warnings;
+  const json rough = {{"pbrMetallicRoughness", {{"roughnessFactor", 0.25}}}};
+  const Material m =
+      ReadMaterial(GlassMaterial({{"transmissionFactor", 1}}, {{"thicknessFactor", 1}}, rough), &warnings);
+  EXPECT_TRUE(m.body());
+  EXPECT_EQ(std::get<MetallicRoughness>(m.reflectance).roughness, 0);
+  EXPECT_EQ(warnings, (std::vector<std::string>{
+                          "material 0 'glass': it transmits light with roughness 0.25, but only ideal "
+                          "glass is read; it is taken as roughness 0"}));
+  // Where nothing goes through, the coat stays as rough as it is.
+  warnings.clear();
+  const Material opaque = ReadMaterial(GlassMaterial({{"transmissionFactor", 0}}, nullptr, rough), &warnings);
+  EXPECT_FALSE(opaque.glass());
+  EXPECT_EQ(std::get<MetallicRoughness>(opaque.reflectance).roughness, 0.25f);
+  json metal = GlassMaterial({{"transmissionFactor", 1}}, nullptr, rough);
+  metal["pbrMetallicRoughness"]["metallicFactor"] = 1;
+  EXPECT_FALSE(ReadMaterial(metal, &warnings).glass());
+  EXPECT_EQ(warnings, std::vector<std::string>{});
+}
+
+TEST(GltfMaterialTest, GlassOutOfRangeNamesMaterialPropertyValueAndRange) {
+  const auto refused = [](json transmission, json volume, const std::string& words) {
+    const json properties = GlassMaterial(std::move(transmission), std::move(volume));
+    ExpectInputError([&] { ReadMaterial(properties); }, {"test.glb: material 0 'glass': " + words});
+  };
+  const json clear = {{"transmissionFactor", 1}};
+  refused({{"transmissionFactor", 1.5}}, nullptr,
+          "KHR_materials_transmission.transmissionFactor is 1.5, expected 0 to 1");
+  refused({{"transmissionFactor", "all"}}, nullptr,
+          "KHR_materials_transmission.transmissionFactor is \"all\"");
+  refused(clear, {{"thicknessFactor", -1}}, "KHR_materials_volume.thicknessFactor is -1");
+  refused(clear, {{"attenuationDistance", 0}},
+          "KHR_materials_volume.attenuationDistance is 0, expected more than 0");
+  refused(clear, {{"attenuationDistance", nullptr}}, "KHR_materials_volume.attenuationDistance is null");
+  refused(clear, {{"attenuationColor", {1, 2, 1}}},
+          "KHR_materials_volume.attenuationColor is [1,2,1], expected 3 numbers, each 0 to 1");
 }
 
 TEST(GltfMaterialTest, OurOwnModelsStayOpaqueAndSaySo) {
@@ -593,7 +671,7 @@ TEST(GltfMaterialTest, WhatIsNotReadIsNamedWithWhatIsUsed) {
                 {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
                 {"extensions",
                  {{"KHR_materials_clearcoat", json::object()},
-                  {"KHR_materials_transmission", json::object()},
+                  {"KHR_materials_iridescence", json::object()},
                   {"KHR_materials_specular", {{"specularColorTexture", {{"index", 0}}}}},
                   {"KHR_materials_emissive_strength", json::object()}}}},
                &warnings);
@@ -601,7 +679,7 @@ TEST(GltfMaterialTest, WhatIsNotReadIsNamedWithWhatIsUsed) {
   EXPECT_EQ(warnings,
             (std::vector<std::string>{
                 "material 0 'oak': KHR_materials_clearcoat is not read; the material is taken without it",
-                "material 0 'oak': KHR_materials_transmission is not read; the surface is opaque",
+                "material 0 'oak': KHR_materials_iridescence is not read; the material is taken without it",
                 "material 0 'oak': alphaMode BLEND is not read; the surface is opaque",
                 "material 0 'oak': baseColorTexture is not read; its factor is used",
                 "material 0 'oak': normalTexture is not read; the surface is taken without it",

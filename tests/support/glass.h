@@ -1,0 +1,26 @@
+#pragma once
+
+#include "brdf/reflectance.h"
+
+namespace lobe::test {
+
+/// A solid body of glass: closed surfaces, fronts outside.
+inline MetallicRoughness ClearGlass(float ior, const Rgb& colour = Rgb::Constant(1)) {
+  MetallicRoughness m;
+  m.base_color = colour;
+  m.metallic = 0;
+  m.roughness = 0;
+  m.ior = ior;
+  m.transmission = 1;
+  m.thickness = 1;
+  return m;
+}
+
+/// A thin pane; its material must be double-sided, as readers make it.
+inline MetallicRoughness Pane(float ior, const Rgb& colour = Rgb::Constant(1)) {
+  MetallicRoughness m = ClearGlass(ior, colour);
+  m.thickness = 0;
+  return m;
+}
+
+}  // namespace lobe::test
