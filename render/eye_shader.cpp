@@ -1,16 +1,17 @@
 #include "render/eye_shader.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "render/sobol.h"
-#include "scene/mirror.h"
 
 namespace lobe {
 namespace {
 
-constexpr uint64_t kReflected = 0x5ef;  // what keys are mixed with behind a mirror
+constexpr uint64_t kReflected = 0x5ef,
+                   kTransmitted = 0x72a;  // what keys are mixed with behind a mirror, glass
+
+constexpr float kLeastThroughput = 1e-3f;  // of a way by mirrors and glass that is still followed
 
 }  // namespace
 
@@ -23,6 +24,8 @@ struct EyeShader::Way {
   int mirrors = 0;
   bool gathered = false;    // by a diffuse or glossy surface: lobes are read wherever the way ends
   float direction_pdf = 0;  // with which the gathering surface found this direction; 0: lamps not aimed at
+  float travelled = 0;      // since then, through panes
+  MediaStack media;
 };
 
 struct EyeShader::Task {
@@ -67,82 +70,97 @@ EyeLight EyeShader::Shade(const Ray& ray, const RayHit& hit, const RenderOptions
   return task.light;
 }
 
-void EyeShader::Follow(const Ray& ray, const RayHit& hit, const Way& way, Task& task) const {
+void EyeShader::Follow(const Ray& ray, const RayHit& hit, Way way, Task& task) const {
   if (!hit.hit()) return;
   const uint32_t material = paths_.material(hit.face);
   const PathScene::Surface& surface = paths_.surface(hit.face);
-  if (hit.side == Side::kBack && !surface.double_sided) return;
+  const SpecularSurfaces& specular = paths_.specular();
+  const SpecularSurfaces::Kind kind = specular.kind(material);
+  const bool inside = hit.side == Side::kBack && kind == SpecularSurfaces::Kind::kBody;
+  if (hit.side == Side::kBack && !surface.double_sided && !inside) return;
+  if (specular.any_body()) way.throughput *= specular.Transmittance(way.media, material, hit.side, hit.t);
+  way.travelled += hit.t;
+  if (!inside) Surface(ray, hit, way, task);
+  if (kind == SpecularSurfaces::Kind::kNone) return;
+
+  const HitPoint at = FindHitPoint(solution_.scene, ray, hit);
+  const SpecularWays ways = specular.Continue(material, hit.side, at, -ray.direction, way.media);
+  const auto go_on = [&](const SpecularWay& next_way, const MediaStack& media, bool straight) {
+    if (!next_way.open()) return;
+    Way next = way;
+    next.throughput *= next_way.weight;
+    if (way.mirrors == task.options.max_mirror_depth || next.throughput.maxCoeff() < kLeastThroughput) {
+      task.work.cut_off += next.throughput.sum();
+      return;
+    }
+    ++next.mirrors;
+    next.key = Mix(way.key, &next_way == &ways.reflection ? kReflected : kTransmitted);
+    next.media = media;
+    // Where a lamp was aimed at through panes, the light found this way has to share with that.
+    if (!straight) next.direction_pdf = 0;
+    // A gathered way stays with what its gatherer reflects.
+    if (!way.gathered) {
+      next.direct = next.indirect = &task.light.specular;
+    } else if (!straight) {
+      next.direct = way.indirect;
+    }
+    const Ray on{at.position + next_way.outward * paths_.tracer().epsilon(), 0.0f, next_way.direction,
+                 std::numeric_limits<float>::infinity()};
+    ++task.work.rays;
+    Follow(on, paths_.tracer().Intersect(on), next, task);
+  };
+  go_on(ways.reflection, way.media, false);
+  go_on(ways.transmission, ways.beyond, ways.straight);
+}
+
+// What leaves the surface itself: emission, and light that it scatters.
+void EyeShader::Surface(const Ray& ray, const RayHit& hit, const Way& way, Task& task) const {
+  const uint32_t material = paths_.material(hit.face);
+  const PathScene::Surface& surface = paths_.surface(hit.face);
   const Vec3 wo = -ray.direction;
+  float* basis = task.work.basis.data();
   if (surface.emits) {
-    const float weight = way.direction_pdf > 0 ? PowerWeight(way.direction_pdf, paths_.LightPdf(hit, wo)) : 1;
+    const float weight = way.direction_pdf > 0
+                             ? PowerWeight(way.direction_pdf, paths_.LightPdf(hit.face, wo, way.travelled))
+                             : 1;
     *way.direct += way.throughput * (weight * surface.emission);
   }
 
   const Mesh::Location where = stored_.Locate(hit);
+  const auto sample = [&](const ReflectanceSampler& sampler, int samples, bool gather) {
+    if (!sampler.black()) Sample(paths_.VertexAt(hit, wo), sampler, samples, gather, way, task);
+  };
   switch (way.gathered ? Reading::kStored : ReadingOf(material, task.options)) {
-    case Reading::kStored:
-      Read(where, wo, task.split && !way.gathered, way, task);
+    case Reading::kStored: {
+      const Rgb direct =
+          task.split && !way.gathered ? stored_.Direct(where, wo, basis).max(0.0f) : Rgb(Rgb::Zero());
+      Show(stored_.Total(where, wo, basis), direct, way, task);
       break;
+    }
     case Reading::kDirect: {
-      const Rgb rest = stored_.Total(where, wo, task.work.basis.data()) -
-                       stored_.Direct(where, wo, task.work.basis.data());
-      *way.indirect += way.throughput * rest.max(0.0f);
-      task.light.clamped += way.throughput * (rest.max(0.0f) - rest);
-      if (!surface.sampler.black()) {
-        Sample(paths_.VertexAt(hit, wo), surface.sampler, task.options.light_samples, /*gather=*/false, way,
-               task);
-      }
+      const Rgb total = stored_.Total(where, wo, basis);
+      Show(total - stored_.Direct(where, wo, basis), Rgb::Zero(), way, task);
+      sample(surface.sampler, task.options.light_samples, /*gather=*/false);
       break;
     }
     case Reading::kGather: {
-      const Rgb base = stored_.Base(where, wo, task.work.basis.data());
-      const Rgb direct =
-          task.split ? stored_.DirectBase(where, wo, task.work.basis.data()).max(0.0f) : Rgb(Rgb::Zero());
-      *way.direct += way.throughput * direct;
-      *way.indirect += way.throughput * (base.max(0.0f) - direct);
-      task.light.clamped += way.throughput * (base.max(0.0f) - base);
-      Sample(paths_.VertexAt(hit, wo), gloss_[material], task.options.gather_samples, /*gather=*/true, way,
-             task);
+      const Rgb direct = task.split ? stored_.DirectBase(where, wo, basis).max(0.0f) : Rgb(Rgb::Zero());
+      Show(stored_.Base(where, wo, basis), direct, way, task);
+      sample(gloss_[material], task.options.gather_samples, /*gather=*/true);
       break;
     }
     case Reading::kGatherAll:
-      if (!surface.sampler.black()) {
-        Sample(paths_.VertexAt(hit, wo), surface.sampler, task.options.gather_samples, /*gather=*/true, way,
-               task);
-      }
+      sample(surface.sampler, task.options.gather_samples, /*gather=*/true);
       break;
   }
-
-  if (solution_.material_kinds[material] != GlossKind::kMirror) return;
-  const HitPoint at = FindHitPoint(solution_.scene, solution_.mesh, ray, hit, where);
-  const float cosine = std::clamp(wo.dot(at.normal), 0.0f, 1.0f);
-  Way next = way;
-  next.throughput *=
-      std::get<MetallicRoughness>(solution_.scene.materials[material].reflectance).Fresnel(cosine);
-  if ((next.throughput <= 0).all()) return;
-  if (way.mirrors == task.options.max_mirror_depth) {
-    task.work.cut_off += next.throughput.sum();
-    return;
-  }
-  ++next.mirrors;
-  next.key = Mix(way.key, kReflected);
-  next.direction_pdf = 0;
-  // A gathered way stays with what its gatherer reflects.
-  next.direct = next.indirect = way.gathered ? way.indirect : &task.light.specular;
-  const Ray reflected{at.position + at.geometric_normal * paths_.tracer().epsilon(), 0.0f,
-                      MirrorDirection(wo, at), std::numeric_limits<float>::infinity()};
-  ++task.work.rays;
-  Follow(reflected, paths_.tracer().Intersect(reflected), next, task);
 }
 
-void EyeShader::Read(const Mesh::Location& where, const Vec3& wo, bool split, const Way& way,
-                     Task& task) const {
-  const Rgb total = stored_.Total(where, wo, task.work.basis.data());
-  const Rgb shown = total.max(0.0f);
-  const Rgb direct = split ? stored_.Direct(where, wo, task.work.basis.data()).max(0.0f) : Rgb(Rgb::Zero());
+// Light read from lobes; `direct` of it. Negative values become zero.
+void EyeShader::Show(const Rgb& read, const Rgb& direct, const Way& way, Task& task) const {
+  const Rgb shown = read.max(0.0f);
   *way.direct += way.throughput * direct;
   *way.indirect += way.throughput * (shown - direct);
-  task.light.clamped += way.throughput * (shown - total);
+  task.light.clamped += way.throughput * (shown - read);
 }
 
 // Lamps are aimed at and directions drawn, equally many of both, weighed by the power heuristic.
@@ -153,6 +171,7 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
   Way next = way;
   next.throughput /= float(samples);
   next.gathered = true;
+  next.travelled = 0;
   for (int j = 0; j < samples; ++j) {
     const uint32_t index = task.sample * uint32_t(samples) + uint32_t(j);
     const auto choice = choices.BitsAt(index);
@@ -162,9 +181,8 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
           paths_.SampleLamp(vertex, sampler, uint64_t(choice[0]) << 32, place[0], place[1]);
       if (lamp.light_pdf > 0) {
         ++task.work.rays;
-        if (!tracer.Occluded(lamp.shadow)) {
-          *way.direct += next.throughput * lamp.value * PowerWeight(lamp.light_pdf, lamp.direction_pdf);
-        }
+        *way.direct += next.throughput * lamp.value * paths_.Visible(lamp.shadow) *
+                       PowerWeight(lamp.light_pdf, lamp.direction_pdf);
       }
     }
     const auto u = directions.At(index);
@@ -173,17 +191,22 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
     // Ideal reflections are followed by Follow.
     if (!scattered.alive || scattered.pdf == 0) continue;
     ++task.work.rays;
-    const RayHit hit = tracer.Intersect(scattered.ray);
-    if (!hit.hit()) continue;
-    Way found = next;
-    found.throughput *= scattered.weight;
-    found.key = Mix(way.key, index);
-    found.direction_pdf = paths_.has_lamps() ? scattered.pdf : 0;
     if (gather) {
-      Follow(scattered.ray, hit, found, task);
-    } else if (paths_.Emits(hit)) {
-      const float weight = PowerWeight(scattered.pdf, paths_.LightPdf(hit, -scattered.ray.direction));
-      *way.direct += found.throughput * (weight * paths_.surface(hit.face).emission);
+      Way found = next;
+      found.throughput *= scattered.weight;
+      found.key = Mix(way.key, index);
+      found.direction_pdf = paths_.has_lamps() ? scattered.pdf : 0;
+      Follow(scattered.ray, tracer.Intersect(scattered.ray), found, task);
+    } else {
+      Ray last = scattered.ray;
+      Rgb passed = Rgb::Constant(1);
+      const RayHit hit = paths_.specular().IntersectPastPanes(tracer, &last, &passed);
+      if (!hit.hit() || !paths_.Emits(hit)) continue;
+      const float distance = (last.origin - scattered.ray.origin).norm() + hit.t;
+      const float weight =
+          PowerWeight(scattered.pdf, paths_.LightPdf(hit.face, -scattered.ray.direction, distance));
+      *way.direct +=
+          next.throughput * scattered.weight * passed * (weight * paths_.surface(hit.face).emission);
     }
   }
 }

@@ -14,7 +14,7 @@ namespace lobe {
 struct EyeLight {
   Rgb direct = Rgb::Zero();    ///< emission seen, and lamps' light reflected once by what the ray met
   Rgb indirect = Rgb::Zero();  ///< the rest of what that reflects
-  Rgb specular = Rgb::Zero();  ///< everything by way of ideal mirrors
+  Rgb specular = Rgb::Zero();  ///< everything by way of ideal mirrors and glass
   Rgb clamped = Rgb::Zero();   ///< made by showing negative values of lobes as zero
   Rgb Sum() const { return direct + indirect + specular; }
 };
@@ -59,8 +59,9 @@ class EyeShader {
   struct Way;
   struct Task;
 
-  void Follow(const Ray& ray, const RayHit& hit, const Way& way, Task& task) const;
-  void Read(const Mesh::Location& where, const Vec3& wo, bool split, const Way& way, Task& task) const;
+  void Follow(const Ray& ray, const RayHit& hit, Way way, Task& task) const;
+  void Surface(const Ray& ray, const RayHit& hit, const Way& way, Task& task) const;
+  void Show(const Rgb& read, const Rgb& direct, const Way& way, Task& task) const;
   void Sample(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler, int samples, bool gather,
               const Way& way, Task& task) const;
 

@@ -11,7 +11,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kLeastCosine = 0.01f;  // of the eye about an interpolated normal
-constexpr float kLeastLift = 1e-4f;    // of a mirrored direction off its face
 
 // Barycentrics of a point drawn evenly from a triangle, by folding the unit square: Heitz, "A Low-Distortion
 // Map Between Triangle and Square", 2019.
@@ -27,7 +26,7 @@ void FoldSquare(float* u, float* v) {
 
 }  // namespace
 
-PathScene::PathScene(const Scene& scene) : tracer_(scene) {
+PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
   for (const Material& m : scene.materials) {
     surfaces_.push_back({ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided});
   }

@@ -8,6 +8,7 @@
 #include "render/alias_table.h"
 #include "scene/ray_tracer.h"
 #include "scene/scene.h"
+#include "scene/specular.h"
 
 namespace lobe {
 
@@ -40,7 +41,7 @@ class PathScene {
     Rgb value = Rgb::Zero();  ///< f |cos| emission / light_pdf if nothing is in the way; 0: no way
     float light_pdf = 0;  ///< with which the lamp's point was aimed at, per steradian seen from the vertex
     float direction_pdf = 0;  ///< with which `sampler` would have found it
-    Ray shadow;               ///< free if not Occluded
+    Ray shadow;               ///< what Visible asks about
   };
 
   /// A ray that goes on from a vertex.
@@ -52,6 +53,7 @@ class PathScene {
   };
 
   const RayTracer& tracer() const { return tracer_; }
+  const SpecularSurfaces& specular() const { return specular_; }
   const Surface& surface(uint32_t face) const { return surfaces_[faces_[face].material]; }
   uint32_t material(uint32_t face) const { return faces_[face].material; }
   bool has_lamps() const { return !lamps_.empty(); }
@@ -60,11 +62,11 @@ class PathScene {
     const Surface& s = surface(hit.face);
     return s.emits && (hit.side == Side::kFront || s.double_sided);
   }
-  /// Per steradian seen from where `hit` was found along unit `-wo`, with which shadow rays end there; 0
-  /// where no lamp is.
-  float LightPdf(const RayHit& hit, const Vec3& wo) const {
-    const FaceShade& face = faces_[hit.face];
-    return face.light_density * hit.t * hit.t / std::abs(face.normal.dot(wo));
+  /// Per steradian seen from `distance` away along unit `wo`, with which shadow rays end on this face; 0
+  /// if it is no lamp.
+  float LightPdf(uint32_t face, const Vec3& wo, float distance) const {
+    const FaceShade& f = faces_[face];
+    return f.light_density * distance * distance / std::abs(f.normal.dot(wo));
   }
   /// About `wo`, unit, pointing back along the ray.
   Vertex VertexAt(const RayHit& hit, const Vec3& wo) const;
@@ -75,6 +77,11 @@ class PathScene {
   /// [0, 1)).
   LampSample SampleLamp(const Vertex& vertex, const ReflectanceSampler& sampler, uint64_t lamp, float u,
                         float v) const;
+  /// What comes along a shadow ray: 1 if it is free, 0 if it is blocked, and between them through panes.
+  Rgb Visible(const Ray& shadow) const {
+    if (specular_.any_pane()) return specular_.SeeThrough(tracer_, shadow);
+    return Rgb::Constant(tracer_.Occluded(shadow) ? 0.0f : 1.0f);
+  }
   Scattered Scatter(const Vertex& vertex, const ReflectanceSampler& sampler, float u1, float u2,
                     float u3) const;
 
@@ -89,6 +96,7 @@ class PathScene {
   };
 
   RayTracer tracer_;
+  SpecularSurfaces specular_;
   std::vector<Surface> surfaces_;  // by material
   std::vector<FaceShade> faces_;
   std::vector<std::array<Vec3, 3>> corner_normals_;  // of smooth faces

@@ -47,7 +47,7 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
       float weight = 1;
       if (direction_pdf > 0 && by_light) {
         weight = options_.light_sampling == LightSampling::kBoth
-                     ? PowerWeight(direction_pdf, scene_.LightPdf(hit, wo))
+                     ? PowerWeight(direction_pdf, scene_.LightPdf(hit.face, wo, hit.t))
                      : 0;
       }
       radiance += throughput * (weight * surface.emission);
