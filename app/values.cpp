@@ -63,6 +63,25 @@ PixelPosition ParsePixel(const std::string& flag, const std::string& text) {
   return {numbers[0], numbers[1]};
 }
 
+PixelRect ParseRect(const std::string& flag, const std::string& text) {
+  const auto n = Numbers<int>(text, ',');
+  if (n.size() != 4) Refuse(flag, text, "a rectangle X0,Y0,X1,Y1 in pixels, such as 10,20,30,40");
+  if (n[0] < 0 || n[1] < 0 || n[0] >= n[2] || n[1] >= n[3]) {
+    Refuse(flag, text, "a rectangle with 0 <= X0 < X1 and 0 <= Y0 < Y1");
+  }
+  return {n[0], n[1], n[2], n[3]};
+}
+
+ToneCurve ParseTone(const std::string& flag, const std::string& text) {
+  const auto curve = ToneCurveNamed(text);
+  if (!curve) Refuse(flag, text, "srgb, reinhard or filmic");
+  return *curve;
+}
+
+void RequireExposure(const std::string& flag, float stops) {
+  if (!(std::abs(stops) <= 100)) Refuse(flag, std::to_string(stops), "a number of stops from -100 to 100");
+}
+
 std::string Extension(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

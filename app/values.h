@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "render/tone.h"
 #include "scene/scene.h"
 
 namespace lobe {
@@ -25,6 +26,14 @@ struct PixelPosition {
 };
 /// "17,3", from the top left, 0,0.
 PixelPosition ParsePixel(const std::string& flag, const std::string& text);
+
+/// "10,20,30,40": pixels 10..29 and 20..39, not empty and not negative.
+PixelRect ParseRect(const std::string& flag, const std::string& text);
+
+/// "srgb", "reinhard", "filmic".
+ToneCurve ParseTone(const std::string& flag, const std::string& text);
+/// Stops, within +-100: beyond, every picture is black or white.
+void RequireExposure(const std::string& flag, float stops);
 
 /// The name's ending, small letters, dot included: ".exr".
 std::string Extension(const std::string& path);

@@ -118,6 +118,18 @@ bool IsGlass(const Reflectance& r) {
   return m && m->roughness < kMirrorRoughness && (m->GlassColor() * m->UnderCoat(m->F0()) > 0).any();
 }
 
+Rgb NormalAlbedo(const Reflectance& r) {
+  if (const auto* m = std::get_if<MetallicRoughness>(&r)) {
+    return m->F0() + m->UnderCoat(m->F0()) * m->DiffuseColor();
+  }
+  return std::visit(
+      [](const auto& model) {
+        if constexpr (requires { model.albedo; }) return model.albedo;
+        return Rgb(Rgb::Zero());  // unreachable: metallic-roughness came first
+      },
+      r);
+}
+
 double GgxD(double cos_h, double alpha) {
   if (cos_h <= 0) return 0;
   const double a2 = alpha * alpha;

@@ -92,6 +92,10 @@ bool Transmits(const Reflectance& r);
 /// delta.
 bool IsGlass(const Reflectance& r);
 
+/// What a smooth surface of these colours reflects at normal incidence: coat and base without the shadowing
+/// of rough ones. The colour of a material in one triple.
+Rgb NormalAlbedo(const Reflectance& r);
+
 /// GGX distribution (Walter et al., EGSR 2007, eq. 33) at half-vector cosine `cos_h`, sr^-1.
 double GgxD(double cos_h, double alpha);
 /// V = G2 / (4 cos_i cos_o), Smith.

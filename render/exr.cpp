@@ -1,8 +1,12 @@
 #include "render/exr.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <list>
+#include <stdexcept>
 #include <type_traits>
 
 #include <ImathMatrix.h>
@@ -114,43 +118,184 @@ void InsertAttributes(const ExrAttributes& attributes, Imf::Header* header) {
   }
 }
 
+/// Channels on their way into a file; keeps what had to be converted.
+class OutgoingChannels {
+ public:
+  OutgoingChannels(const Imath::Box2i& window, Imf::Header* header) : window_(window), header_(header) {}
+
+  void AddFloat(const std::string& name, const float* values, size_t stride) {
+    header_->channels().insert(name, Imf::Channel(Imf::FLOAT));
+    frame_.insert(name, Imf::Slice::Make(Imf::FLOAT, values, window_, stride, stride * RowLength()));
+  }
+  void AddDepth(const std::string& name, const Image& image) {
+    std::vector<float>& plane = floats_.emplace_back();
+    for (const Rgb& p : image.pixels) plane.push_back(std::isinf(p[0]) ? kBackgroundDepth : p[0]);
+    AddFloat(name, plane.data(), sizeof(float));
+  }
+  void AddHalf(const std::string& name, const Image& image, int channel) {
+    std::vector<half>& plane = halves_.emplace_back();
+    for (const Rgb& p : image.pixels) {
+      if (std::abs(p[channel]) > kHalfMax) ++clamped_;
+      // NaN passes through: what went wrong should be seen.
+      plane.push_back(
+          half(std::isnan(p[channel]) ? p[channel] : std::clamp(p[channel], -kHalfMax, kHalfMax)));
+    }
+    header_->channels().insert(name, Imf::Channel(Imf::HALF));
+    frame_.insert(
+        name, Imf::Slice::Make(Imf::HALF, plane.data(), window_, sizeof(half), sizeof(half) * RowLength()));
+  }
+  /// Three channels of an image.
+  void AddImage(const std::vector<std::string>& names, const Image& image, bool as_half) {
+    for (int c = 0; c < 3; ++c) {
+      if (as_half) {
+        AddHalf(names[c], image, c);
+      } else {
+        AddFloat(names[c], image.pixels.data()->data() + c, sizeof(Rgb));
+      }
+    }
+  }
+
+  const Imf::FrameBuffer& frame() const { return frame_; }
+  size_t clamped() const { return clamped_; }
+
+ private:
+  size_t RowLength() const { return size_t(window_.max.x - window_.min.x + 1); }
+
+  Imath::Box2i window_;
+  Imf::Header* header_;
+  Imf::FrameBuffer frame_;
+  // Slices point into these; a list's elements stay where they are.
+  std::list<std::vector<float>> floats_;
+  std::list<std::vector<half>> halves_;
+  size_t clamped_ = 0;
+};
+
+void RequireFit(const LayeredImage& image, const ExrOptions& o) {
+  const Image& color = image.color;
+  bool fits = color.width > 0 && color.height > 0;
+  for (const auto& [layer, values] : image.layers) {
+    fits = fits && values.width == color.width && values.height == color.height;
+  }
+  if (o.full_width != 0 || o.full_height != 0) {
+    fits = fits && o.left >= 0 && o.top >= 0 && o.left + color.width <= o.full_width &&
+           o.top + color.height <= o.full_height;
+  }
+  if (!fits) throw std::invalid_argument("WriteExr: sizes of colours, layers and windows do not fit");
+}
+
+/// The data window's size; refuses what is no picture, before memory is asked for.
+std::pair<int, int> SizeOf(const Imf::InputFile& file, const std::string& path) {
+  const Imath::Box2i window = file.header().dataWindow();
+  const int64_t width = int64_t(window.max.x) - window.min.x + 1;
+  const int64_t height = int64_t(window.max.y) - window.min.y + 1;
+  if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels || width * height > kMaxPixels) {
+    throw InputError(path + ": a data window of " + std::to_string(width) + " x " + std::to_string(height) +
+                     " pixels; 1 to 2^28 pixels are expected");
+  }
+  return {int(width), int(height)};
+}
+
+/// Three channels, all of which there are; the same one may be asked for three times.
+Image ReadChannels(Imf::InputFile& file, const std::array<std::string, 3>& names, const std::string& path) {
+  const auto [width, height] = SizeOf(file, path);
+  if (!file.isComplete()) Unreadable(path, "it is incomplete: scan lines or tiles are missing");
+  const Imath::Box2i window = file.header().dataWindow();
+  Image image(width, height);
+  Imf::FrameBuffer frame;
+  for (int c = 0; c < 3; ++c) {
+    // Slice::Make finds the (virtual) address of pixel (0, 0), which lies outside for offset windows.
+    frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, image.pixels.data()->data() + c, window, sizeof(Rgb),
+                                            sizeof(Rgb) * size_t(width)));
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  if (names[0] == names[2]) {  // OpenEXR filled the last of them only
+    for (Rgb& p : image.pixels) p.setConstant(p[2]);
+  }
+  return image;
+}
+
+std::array<std::string, 3> Triple(const std::string& layer, const char* letters) {
+  std::array<std::string, 3> names;
+  for (int c = 0; c < 3; ++c) names[c] = layer + "." + letters[c];
+  return names;
+}
+
+bool HasAll(const Imf::ChannelList& channels, const std::array<std::string, 3>& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return channels.findChannel(name) != nullptr; });
+}
+
+std::vector<std::string> LayersIn(const Imf::ChannelList& channels) {
+  std::vector<std::string> found;
+  for (auto i = channels.begin(); i != channels.end(); ++i) {
+    const std::string name = i.name();
+    const size_t dot = name.rfind('.');
+    const std::string last = dot == std::string::npos ? name : name.substr(dot + 1);
+    if (dot == std::string::npos && (last == "R" || last == "G" || last == "B" || last == "A")) continue;
+    std::string layer = name;
+    if (dot != std::string::npos) {
+      const std::string stem = name.substr(0, dot);
+      const bool rgb = HasAll(channels, Triple(stem, "RGB")), xyz = HasAll(channels, Triple(stem, "XYZ"));
+      if (rgb && last == "A") continue;
+      if ((rgb && std::strchr("RGB", last[0])) || (!rgb && xyz && std::strchr("XYZ", last[0]))) layer = stem;
+    }
+    if (std::find(found.begin(), found.end(), layer) == found.end()) found.push_back(layer);
+  }
+  return found;
+}
+
+PixelRect ToRect(const Imath::Box2i& box) { return {box.min.x, box.min.y, box.max.x + 1, box.max.y + 1}; }
+
 }  // namespace
 
-void WriteExr(const Image& image, const ExrAttributes& attributes, const std::string& path) {
+ExrReport WriteExr(const LayeredImage& image, const ExrAttributes& attributes, const ExrOptions& options,
+                   const std::string& path) {
+  RequireFit(image, options);
   MemoryStream stream(path);
+  ExrReport report;
   try {
-    Imf::Header header(image.width, image.height);
+    const int width = image.color.width, height = image.color.height;
+    const Imath::Box2i data({options.left, options.top},
+                            {options.left + width - 1, options.top + height - 1});
+    const Imath::Box2i display = options.full_width > 0
+                                     ? Imath::Box2i({0, 0}, {options.full_width - 1, options.full_height - 1})
+                                     : data;
+    Imf::Header header(display, data);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709
     InsertAttributes(attributes, &header);
-    Imf::FrameBuffer frame;
-    const size_t stride = sizeof(Rgb);
-    for (int c = 0; c < 3; ++c) {
-      header.channels().insert(kChannels[c], Imf::Channel(Imf::FLOAT));
-      // OpenEXR only reads from here; its interface has no const.
-      char* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data())) + c * sizeof(float);
-      frame.insert(kChannels[c], Imf::Slice(Imf::FLOAT, base, stride, stride * image.width));
+    OutgoingChannels channels(data, &header);
+    channels.AddImage({"R", "G", "B"}, image.color, options.half_colours);
+    for (const auto& [layer, values] : image.layers) {
+      if (layer == Layer::kDepth) {
+        channels.AddDepth(LayerChannels(layer)[0], values);
+      } else {
+        channels.AddImage(LayerChannels(layer), values, options.half_colours && IsColour(layer));
+      }
     }
+    report.clamped = channels.clamped();
     Imf::OutputFile file(stream, header);
-    file.setFrameBuffer(frame);
-    file.writePixels(image.height);
+    file.setFrameBuffer(channels.frame());
+    file.writePixels(height);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
     throw InputError(path + ": OpenEXR cannot write this picture (" + OneLine(e.what()) + ")");
   }
   WriteFileAtomically(path, stream.bytes);
+  return report;
+}
+
+void WriteExr(const Image& image, const ExrAttributes& attributes, const std::string& path) {
+  LayeredImage layered;
+  layered.color = image;
+  WriteExr(layered, attributes, {}, path);
 }
 
 Image ReadExr(const std::string& path) {
   return WithFile(path, [&](Imf::InputFile& file) {
-    const Imath::Box2i window = file.header().dataWindow();
-    const int64_t width = int64_t(window.max.x) - window.min.x + 1;
-    const int64_t height = int64_t(window.max.y) - window.min.y + 1;
-    if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels || width * height > kMaxPixels) {
-      throw InputError(path + ": a data window of " + std::to_string(width) + " x " + std::to_string(height) +
-                       " pixels; 1 to 2^28 pixels are expected");
-    }
+    SizeOf(file, path);
     const Imf::ChannelList& channels = file.header().channels();
     for (const char* name : kChannels) {
       if (!channels.findChannel(name)) {
@@ -158,18 +303,30 @@ Image ReadExr(const std::string& path) {
                          "); R, G and B are expected");
       }
     }
-    if (!file.isComplete()) Unreadable(path, "it is incomplete: scan lines or tiles are missing");
+    return ReadChannels(file, {kChannels[0], kChannels[1], kChannels[2]}, path);
+  });
+}
 
-    Image image(static_cast<int>(width), static_cast<int>(height));
-    Imf::FrameBuffer frame;
-    for (int c = 0; c < 3; ++c) {
-      // Slice::Make finds the (virtual) address of pixel (0, 0), which lies outside for offset windows.
-      frame.insert(kChannels[c], Imf::Slice::Make(Imf::FLOAT, image.pixels.data()->data() + c, window,
-                                                  sizeof(Rgb), sizeof(Rgb) * size_t(width)));
-    }
-    file.setFrameBuffer(frame);
-    file.readPixels(window.min.y, window.max.y);
-    return image;
+std::vector<std::string> ListExrLayers(const std::string& path) {
+  return WithFile(path, [](Imf::InputFile& file) { return LayersIn(file.header().channels()); });
+}
+
+ExrLayer ReadExrLayer(const std::string& path, const std::string& name) {
+  return WithFile(path, [&](Imf::InputFile& file) -> ExrLayer {
+    const Imf::ChannelList& channels = file.header().channels();
+    const auto rgb = Triple(name, "RGB"), xyz = Triple(name, "XYZ");
+    if (HasAll(channels, rgb)) return {ReadChannels(file, rgb, path), true};
+    if (HasAll(channels, xyz)) return {ReadChannels(file, xyz, path), false};
+    if (channels.findChannel(name)) return {ReadChannels(file, {name, name, name}, path), false};
+    std::string found;
+    for (const std::string& layer : LayersIn(channels)) found += (found.empty() ? "" : ", ") + layer;
+    throw InputError(path + ": has no layer '" + name + "'; found: " + (found.empty() ? "none" : found));
+  });
+}
+
+ExrWindows ReadExrWindows(const std::string& path) {
+  return WithFile(path, [](Imf::InputFile& file) -> ExrWindows {
+    return {ToRect(file.header().dataWindow()), ToRect(file.header().displayWindow())};
   });
 }
 

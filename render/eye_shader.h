@@ -17,6 +17,13 @@ struct EyeLight {
   Rgb specular = Rgb::Zero();  ///< everything by way of ideal mirrors and glass
   Rgb clamped = Rgb::Zero();   ///< made by showing negative values of lobes as zero
   Rgb Sum() const { return direct + indirect + specular; }
+  EyeLight& operator+=(const EyeLight& other) {
+    direct += other.direct;
+    indirect += other.indirect;
+    specular += other.specular;
+    clamped += other.clamped;
+    return *this;
+  }
 };
 
 /// Which of a pixel's samples an eye ray is: what its random numbers follow from.

@@ -9,6 +9,15 @@
 
 namespace lobe {
 
+/// Pixels x0 <= x < x1, y0 <= y < y1, from the top left.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  bool Contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  bool operator==(const PixelRect&) const = default;
+};
+
 /// Scene-linear picture, row by row from the top left.
 struct Image {
   int width = 0, height = 0;

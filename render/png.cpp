@@ -1,5 +1,6 @@
 #include "render/png.h"
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -31,14 +32,14 @@ struct PngImage {
 
 std::vector<uint8_t> EncodePng(int width, int height, int channels,
                                const std::vector<unsigned char>& samples) {
-  if (width < 1 || height < 1 || (channels != 3 && channels != 4) ||
+  if (width < 1 || height < 1 || (channels != 1 && channels != 3 && channels != 4) ||
       samples.size() != size_t(width) * height * channels) {
     throw std::invalid_argument("EncodePng: samples do not fit the picture's size");
   }
   PngImage png;
   png.image.width = width;
   png.image.height = height;
-  png.image.format = channels == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+  png.image.format = channels == 4 ? PNG_FORMAT_RGBA : channels == 3 ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY;
 
   // The documented upper bound saves libpng's alternative, which is to compress twice.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
@@ -54,11 +55,12 @@ void WritePngBytes(int width, int height, const std::vector<unsigned char>& rgb,
   WriteFileAtomically(path, EncodePng(width, height, 3, rgb));
 }
 
-void WritePng(const Image& image, float exposure, const std::string& path) {
+void WritePng(const Image& image, float exposure, const std::string& path, ToneCurve curve) {
+  const float scale = std::exp2(exposure);
   std::vector<unsigned char> rgb;
   rgb.reserve(image.pixels.size() * 3);
   for (const Rgb& pixel : image.pixels) {
-    for (int c = 0; c < 3; ++c) rgb.push_back(ToSrgb8(pixel[c], exposure));
+    for (int c = 0; c < 3; ++c) rgb.push_back(ToSrgb8(ToneMap(curve, pixel[c] * scale)));
   }
   WritePngBytes(image.width, image.height, rgb, path);
 }
@@ -95,6 +97,13 @@ Mask ReadPngMask(const std::string& path) {
   mask.set.resize(pixels);
   for (size_t i = 0; i < pixels; ++i) mask.set[i] = rgba[4 * i] >= 128;
   return mask;
+}
+
+void WritePngMask(const Mask& mask, const std::string& path) {
+  std::vector<unsigned char> grey;
+  grey.reserve(mask.set.size());
+  for (const bool set : mask.set) grey.push_back(set ? 255 : 0);
+  WriteFileAtomically(path, EncodePng(mask.width, mask.height, 1, grey));
 }
 
 }  // namespace lobe

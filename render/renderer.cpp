@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <chrono>
+#include <span>
 #include <sstream>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -30,6 +31,46 @@ struct Renderer::Impl {
   EyeShader shader;
 
   explicit Impl(const Solution& s) : solution(s), shader(s) {}
+
+  // One pixel's layers, from its eye rays, what they hit and the light they brought.
+  void PutLayers(const CameraView& view, std::span<const Ray> rays, std::span<const RayHit> hits,
+                 const EyeLight& light, int x, int y, LayeredImage* image) const {
+    const float each = 1.0f / float(rays.size());
+    for (auto& [layer, values] : image->layers) {
+      Rgb& out = values.at(x, y);
+      switch (layer) {
+        case Layer::kDirect:
+          out = light.direct * each;
+          break;
+        case Layer::kIndirect:
+          out = light.indirect * each;
+          break;
+        case Layer::kSpecular:
+          out = light.specular * each;
+          break;
+        case Layer::kClamped:
+          out = light.clamped * each;
+          break;
+        default:
+          for (size_t i = 0; i < rays.size(); ++i) {
+            if (hits[i].hit()) PutGeometry(layer, view, rays[i], hits[i], each, &out);
+          }
+      }
+    }
+  }
+  void PutGeometry(Layer layer, const CameraView& view, const Ray& ray, const RayHit& hit, float each,
+                   Rgb* out) const {
+    if (layer == Layer::kAlbedo) {
+      *out += each * NormalAlbedo(solution.scene.materials[shader.paths().material(hit.face)].reflectance);
+    } else if (layer == Layer::kNormal) {
+      *out += each * shader.paths().ShadingNormal(hit).array();
+    } else if (layer == Layer::kPosition) {
+      *out += each * (ray.origin + hit.t * ray.direction).array();
+    } else {
+      const float depth = -hit.t * ray.direction.dot(view.camera().back);
+      *out = out->min(depth);
+    }
+  }
 };
 
 Renderer::Renderer(const Solution& solution) : impl_(std::make_unique<Impl>(solution)) {}
@@ -45,10 +86,15 @@ Rgb Renderer::Radiance(const Ray& ray) const {
 
 Image Renderer::Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                        const std::function<bool(double)>& progress) const {
+  return Render(view, options, LayerSet(), report, progress).color;
+}
+
+LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& options, const LayerSet& wanted,
+                              RenderReport* report, const std::function<bool(double)>& progress) const {
   const auto start = std::chrono::steady_clock::now();
   const EyeRays eye_rays(view, options);
   const int samples = eye_rays.per_pixel();
-  Image image(options.width, options.height);
+  LayeredImage image(options.width, options.height, wanted);
 
   struct Scratch {
     std::vector<Ray> rays;
@@ -61,6 +107,7 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
     uint64_t rays = 0;
   };
   std::vector<Sums> sums(TileCount(options.width, options.height));
+  const bool split = wanted.Has(Layer::kDirect) || wanted.Has(Layer::kIndirect);
 
   const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
@@ -77,15 +124,21 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
         const uint64_t key = Mix(Mix(options.seed, 0x9a7e), uint64_t(y) * options.width + x);
-        Rgb pixel = Rgb::Zero();
-        for (int s = 0; s < samples; ++s, ++ray) {
-          const EyeLight light = impl_->shader.Shade(scratch.rays[ray], scratch.hits[ray], options,
-                                                     {key, uint32_t(s)}, /*split=*/false, scratch.work);
-          pixel += light.Sum();
-          sum.clamped += light.clamped.sum();
+        EyeLight pixel;
+        for (int s = 0; s < samples; ++s) {
+          pixel += impl_->shader.Shade(scratch.rays[ray + s], scratch.hits[ray + s], options,
+                                       {key, uint32_t(s)}, split, scratch.work);
         }
-        image.at(x, y) = pixel / float(samples);
-        sum.shown += pixel.sum();
+        const Rgb colour = pixel.Sum();
+        image.color.at(x, y) = colour / float(samples);
+        sum.shown += colour.sum();
+        sum.clamped += pixel.clamped.sum();
+        if (!wanted.empty()) {
+          const std::span rays(scratch.rays.data() + ray, samples);
+          const std::span hits(scratch.hits.data() + ray, samples);
+          impl_->PutLayers(view, rays, hits, pixel, x, y, &image);
+        }
+        ray += samples;
       }
     }
     sum.rays = scratch.rays.size() + scratch.work.rays;

@@ -4,6 +4,7 @@
 
 #include "render/camera_view.h"
 #include "render/image.h"
+#include "render/layers.h"
 #include "solver/solution.h"
 
 namespace lobe {
@@ -58,6 +59,10 @@ class Renderer {
   /// for any number of threads.
   Image Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                const std::function<bool(double)>& progress = {}) const;
+
+  /// The same with layers. The colour does not depend on which are wanted, up to rounding.
+  LayeredImage Render(const CameraView& view, const RenderOptions& options, const LayerSet& wanted,
+                      RenderReport* report, const std::function<bool(double)>& progress = {}) const;
 
   /// Radiance arriving at the ray's origin along it, after at most the default number of mirrors.
   Rgb Radiance(const Ray& ray) const;

@@ -166,6 +166,96 @@ TEST(CompareTest, TheTruthsPairsDifferByRootTwoTimesTheirNoise) {
   }
 }
 
+// Per channel (0.3 / 3)^2 with the epsilon of the mean 2: 0.09 / (1 + 0.04) and so on, averaged.
+TEST(CompareTest, RelativeMseDividesByTheReferencesOwnSquare) {
+  const Image reference = Constant(9, 5, Rgb(1, 2, 3)), a = Constant(9, 5, Rgb(1.3f, 2, 2.4f));
+  const Comparison c = Compare(a, reference, nullptr, nullptr);
+  const double expected = (0.09 / 1.04 + 0.36 / 9.04) / 3;
+  EXPECT_NEAR(c.relative_mse, expected, 1e-7);
+  EXPECT_NEAR(c.relative_error.p50, std::sqrt(expected), 1e-6) << "equal pixels: each is the rms";
+  EXPECT_NEAR(c.relative_error.max, std::sqrt(expected), 1e-6);
+  EXPECT_NEAR(c.bias, (5.7 - 6) / 6, 1e-7);
+}
+
+TEST(CompareTest, NoFigureDependsOnTheExposure) {
+  const Image truth = Constant(16, 16, Rgb(1, 2, 3));
+  Image a = WithNoise(truth, 0.2f, 5);
+  const Comparison c = Compare(a, truth, nullptr, nullptr);
+  Image bright = truth;
+  for (Rgb& p : bright.pixels) p *= 1024;
+  for (Rgb& p : a.pixels) p *= 1024;
+  const Comparison d = Compare(a, bright, nullptr, nullptr);
+  EXPECT_NEAR(d.relative_mse, c.relative_mse, 1e-12);
+  EXPECT_NEAR(d.bias, c.bias, 1e-12);
+  EXPECT_NEAR(d.relative_error.p99, c.relative_error.p99, 1e-6);
+}
+
+// Of 100 pixels, number i is off by i percent: the value that 50, 90 and 99 of them do not exceed.
+TEST(CompareTest, PercentilesAreThoseOfTheSortedErrors) {
+  const Image reference = Constant(10, 10, Rgb::Constant(1));
+  Image a = reference;
+  for (int i = 0; i < 100; ++i) a.pixels[(i * 37) % 100] += float(i + 1) / 100;
+  const Comparison c = Compare(a, reference, nullptr, nullptr);
+  const double unit = 1 / std::sqrt(1 + kRelMseEpsilon);
+  EXPECT_NEAR(c.relative_error.p50, 0.50 * unit, 1e-6);
+  EXPECT_NEAR(c.relative_error.p90, 0.90 * unit, 1e-6);
+  EXPECT_NEAR(c.relative_error.p99, 0.99 * unit, 1e-6);
+  EXPECT_NEAR(c.relative_error.max, 1.00 * unit, 1e-6);
+}
+
+// relMSE 0.01 / 1.01 from the offset e = 0.1 alone; one reference adds its variance of 0.01 / 1.01. What
+// stays is of second order: the denominator's noise n, variance 0.005, is also in the numerator, and the mean
+// of (e - n)^2 / (1 + n)^2 exceeds that of e^2 + n^2 by (4 e + 3 e^2) n^2, 0.0022.
+TEST(CompareTest, RelativeMseOfTwoReferencesIsFreeOfTheirNoiseToFirstOrder) {
+  const int n = 256;
+  const Image truth = Constant(n, n, Rgb::Constant(1)), a = Constant(n, n, Rgb::Constant(1.1f));
+  const Image r = WithNoise(truth, 0.1f, 1), s = WithNoise(truth, 0.1f, 2);
+  EXPECT_NEAR(Compare(a, r, &s, nullptr).relative_mse, 0.01 / 1.01 + 0.0022, 4e-4);
+  EXPECT_GT(Compare(a, r, nullptr, nullptr).relative_mse, 0.018);
+  const Comparison perfect = Compare(truth, r, &s, nullptr);
+  EXPECT_LT(perfect.relative_mse, 1e-3);
+}
+
+TEST(CompareTest, LayersWithSignsAreMeasuredByTheirAbsoluteMean) {
+  const Image reference = Constant(8, 8, Rgb(-1, 0.5f, 0)), a = Constant(8, 8, Rgb(-1, 0.5f, 0.3f));
+  EXPECT_THAT(ErrorOf(a, reference), HasSubstr("mean"));
+  const Comparison c = Compare(a, reference, nullptr, nullptr, ErrorScale::kMeanAbsolute);
+  EXPECT_NEAR(c.pixel_error, std::sqrt(0.09 / 3) / 0.5, 1e-6);
+  EXPECT_NEAR(c.bias, 0.1 / 0.5, 1e-6);
+}
+
+TEST(MeanFlipTest, MaskedPixelsWeighNeitherThemselvesNorOnNeighbours) {
+  const Image reference = Constant(24, 24, Rgb::Constant(0.3f));
+  Image a = reference;
+  Mask mask = NoMask(24, 24);
+  for (int y = 8; y < 16; ++y) {
+    for (int x = 8; x < 16; ++x) {
+      a.at(x, y).setConstant(std::nanf(""));
+      mask.set[size_t(y) * 24 + x] = true;
+    }
+  }
+  EXPECT_EQ(MeanFlip(a, reference, &mask, 0, ToneCurve::kSrgb, 67.02), 0);
+  EXPECT_GT(MeanFlip(a, reference, nullptr, 0, ToneCurve::kSrgb, 67.02), 0.01);
+}
+
+TEST(MeanFlipTest, ItSeesWhatTheExposureShows) {
+  const Image reference = Constant(16, 16, Rgb::Constant(4)), a = Constant(16, 16, Rgb::Constant(6));
+  EXPECT_EQ(MeanFlip(a, reference, nullptr, 0, ToneCurve::kSrgb, 67.02), 0) << "both are white";
+  EXPECT_GT(MeanFlip(a, reference, nullptr, -3, ToneCurve::kSrgb, 67.02), 0.1);
+}
+
+TEST(SideBySideTest, KeepsEveryPictureWhole) {
+  Image a = Constant(2, 2, Rgb::Constant(1)), b = Constant(3, 2, Rgb::Constant(2));
+  a.at(1, 1) = Rgb(5, 6, 7);
+  b.at(2, 1) = Rgb(8, 9, 10);
+  const Image row = SideBySide({&a, &b});
+  ASSERT_EQ(row.width, 5);
+  ASSERT_EQ(row.height, 2);
+  EXPECT_TRUE((row.at(1, 1) == Rgb(5, 6, 7)).all());
+  EXPECT_TRUE((row.at(4, 1) == Rgb(8, 9, 10)).all());
+  EXPECT_TRUE((row.at(2, 0) == 2).all());
+}
+
 TEST(CompareTest, BadInputIsRefusedWithASentence) {
   const Image a = Constant(8, 8, Rgb::Constant(1)), small = Constant(8, 4, Rgb::Constant(1));
   EXPECT_THAT(ErrorOf(a, small), AllOf(HasSubstr("8 x 8"), HasSubstr("8 x 4")));
@@ -192,7 +282,7 @@ TEST(DifferencePictureTest, GrowsLighterWithTheError) {
   a.at(2, 0) -= 0.4f;
   Mask mask = NoMask(8, 8);
   mask.set[3] = true;
-  const Image picture = DifferencePicture(a, reference, &mask);
+  const Image picture = DifferencePicture(a, reference, &mask, 1);
   EXPECT_LT(Luminance(picture.at(0, 0)), Luminance(picture.at(1, 0)));
   EXPECT_LT(Luminance(picture.at(1, 0)), Luminance(picture.at(2, 0)));
   EXPECT_TRUE((picture.at(3, 0) == picture.at(3, 0)[0]).all()) << "the mask is grey";
