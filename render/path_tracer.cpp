@@ -18,7 +18,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kRouletteAfter = 8;       // bounces
 constexpr float kMostSurvival = 0.98f;  // so that a closed room of perfect mirrors comes to an end
 constexpr float kLeastCosine = 0.01f;   // of the eye about an interpolated normal
-constexpr float kLeastLift = 1e-4f;     // of a mirrored direction off its face
 
 // Barycentrics of a point drawn evenly from a triangle, by folding the unit square: Heitz, "A Low-Distortion
 // Map Between Triangle and Square", 2019.
@@ -41,9 +40,15 @@ float PowerWeight(float mine, float other) {
 }  // namespace
 
 PathTracer::PathTracer(const Scene& scene, const PathTracerOptions& options)
-    : options_(options), tracer_(scene) {
+    : options_(options), tracer_(scene), specular_(scene) {
   for (const Material& m : scene.materials) {
-    surfaces_.push_back({ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided});
+    const auto kind = specular_.kind(uint32_t(surfaces_.size()));
+    const auto* glass = m.glass() ? std::get_if<MetallicRoughness>(&m.reflectance) : nullptr;
+    const float base_mean =
+        glass ? (glass->UnderCoat(glass->F0()) * (glass->DiffuseColor() + glass->TransmissionColor())).mean()
+              : 0.0f;
+    surfaces_.push_back(
+        {ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided, kind, base_mean});
   }
 
   // Of faces at one place rays meet only some; lamps no ray can meet must not be sampled either.
@@ -116,7 +121,8 @@ struct PathTracer::Vertex {
   const ReflectanceSampler& sampler;
 };
 
-Rgb PathTracer::LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const {
+Rgb PathTracer::LampLight(const Vertex& vertex, uint32_t medium, RandomStream& random,
+                          uint64_t* traced) const {
   const FaceShade& lamp = faces_[lamps_[choose_lamp_.Draw(random.NextBits())]];
   float u = random.Next(), v = random.Next();
   FoldSquare(&u, &v);
@@ -135,11 +141,19 @@ Rgb PathTracer::LampLight(const Vertex& vertex, RandomStream& random, uint64_t* 
   const Vec3 from = vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above);
   const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
   ++*traced;
-  if (tracer_.Occluded({from, 0, to - from, 1})) return Rgb::Zero();
+  const Ray ray{from, 0, to - from, 1};
+  Rgb emission = surfaces_[lamp.material].emission;
+  if (specular_.any_pane()) {
+    emission *= specular_.SeeThrough(tracer_, ray);
+    if ((emission <= 0).all()) return Rgb::Zero();
+  } else if (tracer_.Occluded(ray)) {
+    return Rgb::Zero();
+  }
+  if (medium != kNone) emission *= specular_.Transmittance(medium, distance);
   const float light_pdf = lamp.light_density * distance2 * distance / std::abs(towards);
   const float weight =
       options_.light_sampling == LightSampling::kBoth ? PowerWeight(light_pdf, value.pdf) : 1;
-  return value.f * surfaces_[lamp.material].emission * (weight * std::abs(wi_local.z()) / light_pdf);
+  return value.f * emission * (weight * std::abs(wi_local.z()) / light_pdf);
 }
 
 Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emission,
@@ -150,22 +164,31 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
   Vec3 wo = wo_start;
   uint64_t traced = 0;
   float direction_pdf = 0;  // of the direction that led here; 0: shadow rays could not have come here
+  float way = 0;            // from where that direction began, metres
+  float in_air = 1;         // radiance in air of throughput 1: what roulette goes by
+  MediaStack media;
   for (int bounce = 0; hit.hit(); ++bounce) {
     const FaceShade& face = faces_[hit.face];
     const Surface& surface = surfaces_[face.material];
     const bool front = hit.side == Side::kFront;
     const bool forced = bounce == 0 && first;  // the caller says how this surface reflects
-    if (!front && !surface.double_sided && !forced) break;
-    if (surface.emits && (bounce > 0 || count_emission)) {
+    const bool glass = surface.specular >= SpecularSurfaces::Kind::kPane && !forced;
+    const bool inside = !front && glass && surface.specular == SpecularSurfaces::Kind::kBody;
+    if (!front && !surface.double_sided && !forced && !inside) break;
+    way += hit.t;
+    if (specular_.any_body()) {
+      throughput *= specular_.Transmittance(media, face.material, hit.side, hit.t);
+    }
+    if (surface.emits && (bounce > 0 || count_emission) && (front || surface.double_sided)) {
       float weight = 1;
       if (direction_pdf > 0 && by_light) {
-        const float light_pdf = face.light_density * hit.t * hit.t / std::abs(face.normal.dot(wo));
+        const float light_pdf = face.light_density * way * way / std::abs(face.normal.dot(wo));
         weight = options_.light_sampling == LightSampling::kBoth ? PowerWeight(direction_pdf, light_pdf) : 0;
       }
       radiance += throughput * (weight * surface.emission);
     }
     const ReflectanceSampler& sampler = forced ? *first : surface.sampler;
-    if (sampler.black() || bounce >= options_.max_bounces) break;
+    if ((sampler.black() && !glass) || bounce >= options_.max_bounces) break;
 
     const Vec3 normal = front ? face.normal : Vec3(-face.normal);
     const Vec3 position = face.corner + hit.u * face.edge1 + hit.v * face.edge2;
@@ -178,26 +201,58 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
     }
     const Frame frame(shading_normal);
     const Vertex vertex{position, normal, frame, frame.ToLocal(wo), sampler};
-    if (by_light) radiance += throughput * LampLight(vertex, random, &traced);
+    const bool has_base = !glass || (!inside && surface.base_mean > 0);
+    if (by_light && has_base) radiance += throughput * LampLight(vertex, media.top(), random, &traced);
 
-    const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
-    const SampledDirection next = sampler.Sample(vertex.wo_local, u1, u2, u3);
-    if (!(next.pdf > 0)) break;
-    throughput *= next.weight;
-    Vec3 wi = frame.ToWorld(next.wi);
-    float above = wi.dot(normal);
-    if (next.delta && above < kLeastLift) {
-      // The reflection about an interpolated normal points into the face.
-      wi = (wi + (kLeastLift - above) * normal).normalized();
-      above = kLeastLift;
+    Vec3 wi;
+    float above = 0;
+    bool scattered = true;
+    Rgb reflected = Rgb::Zero();  // by glass
+    if (glass) {
+      const SpecularWays ways =
+          specular_.Continue(face.material, hit.side, {position, normal, shading_normal}, wo, media);
+      reflected = ways.reflection.weight;
+      const float passes = ways.transmission.weight.mean() / ways.basic;
+      const float stays = reflected.mean() + (has_base ? surface.base_mean : 0.0f);
+      if (!(passes + stays > 0)) break;
+      const float chance = passes / (passes + stays);
+      const bool through = random.Next() < chance;
+      throughput /= through ? chance : 1 - chance;
+      scattered = !through && has_base;
+      if (!scattered) {
+        const SpecularWay& on = through ? ways.transmission : ways.reflection;
+        throughput *= on.weight;
+        wi = on.direction;
+        above = wi.dot(normal);
+      }
+      if (through) {
+        media = ways.beyond;
+        in_air /= ways.basic;
+      }
+      if (!through || !ways.straight) direction_pdf = way = 0;
     }
-    if (!(above * next.wi.z() > 0)) break;
+    if (scattered) {
+      const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
+      const SampledDirection next = sampler.Sample(vertex.wo_local, u1, u2, u3);
+      if (!(next.pdf > 0)) break;
+      // In other glass a coat reflects otherwise than the sampler knows.
+      throughput *= next.delta && glass ? Rgb(reflected / next.pdf) : next.weight;
+      wi = frame.ToWorld(next.wi);
+      above = wi.dot(normal);
+      if (next.delta && above < kLeastLift) {
+        // The reflection about an interpolated normal points into the face.
+        wi = (wi + (kLeastLift - above) * normal).normalized();
+        above = kLeastLift;
+      }
+      if (!(above * next.wi.z() > 0)) break;
+      direction_pdf = next.delta ? 0 : next.pdf;
+      way = 0;
+    }
     if (bounce >= kRouletteAfter) {
-      const float survival = std::min(throughput.maxCoeff(), kMostSurvival);
+      const float survival = std::min(throughput.maxCoeff() * in_air, kMostSurvival);
       if (!(random.Next() < survival)) break;
       throughput /= survival;
     }
-    direction_pdf = next.delta ? 0 : next.pdf;
     hit = tracer_.Intersect({position + normal * std::copysign(tracer_.epsilon(), above), 0, wi, kInfinity});
     ++traced;
     wo = -wi;

@@ -9,6 +9,7 @@
 #include "render/alias_table.h"
 #include "scene/ray_tracer.h"
 #include "scene/scene.h"
+#include "scene/specular.h"
 #include "solver/hash.h"
 
 namespace lobe {
@@ -55,6 +56,10 @@ struct Estimate {
 /// interpolated horizon (a mirror's is pushed up to the face). An eye below that horizon gets the normal
 /// turned until it is 0.01 above.
 ///
+/// Glass is ideal (scene/specular.h). Reflection, transmission and base are chosen by their weights. Straight
+/// ways through panes keep the density of the direction they began with, so that lamps behind panes are met
+/// both by directions and by shadow rays; what has been refracted only by directions.
+///
 /// Keeps what it needs of the scene. Const methods may run in many threads.
 class PathTracer {
  public:
@@ -80,6 +85,8 @@ class PathTracer {
     ReflectanceSampler sampler;
     Rgb emission;
     bool emits, double_sided;
+    SpecularSurfaces::Kind specular;
+    float base_mean;  // of glass: albedo under the coat, mean of channels
   };
   // What shading needs of a face: one cache line.
   struct alignas(64) FaceShade {
@@ -94,8 +101,8 @@ class PathTracer {
 
   Vec3 ShadingNormal(const RayHit& hit, const FaceShade& face) const;
   // One sample of the light straight from lamps, scattered towards the vertex's wo; weighed against
-  // directions.
-  Rgb LampLight(const Vertex& vertex, RandomStream& random, uint64_t* traced) const;
+  // directions. It comes through `medium`, and through panes.
+  Rgb LampLight(const Vertex& vertex, uint32_t medium, RandomStream& random, uint64_t* traced) const;
   // One path. `first`: how the surface it starts from scatters, if not as its material says.
   Rgb Walk(const RayHit& start, const Vec3& wo, bool count_emission, const ReflectanceSampler* first,
            RandomStream& random, uint64_t* rays) const;
@@ -104,6 +111,7 @@ class PathTracer {
 
   PathTracerOptions options_;
   RayTracer tracer_;
+  SpecularSurfaces specular_;
   std::vector<Surface> surfaces_;  // by material
   std::vector<FaceShade> faces_;
   std::vector<std::array<Vec3, 3>> corner_normals_;  // of smooth faces
