@@ -19,17 +19,18 @@ constexpr LedgerEntry kLedger[] = {
     {"emitted", &Ledger::emitted, "by the lamps"},
     {"imbalance", &Ledger::imbalance, "made (+) or lost (-) by the mesh"},
     {"absorbed", &Ledger::absorbed, "by surfaces"},
+    {"in glass", &Ledger::in_glass, "absorbed on the way through glass"},
     {"blocked", &Ledger::blocked, "by black backs and unlit sides"},
     {"escaped", &Ledger::escaped, "out of the scene"},
-    {"mirrored", &Ledger::mirrored, "by ideal mirrors, not followed"},
+    {"mirrored", &Ledger::mirrored, "by ideal mirrors and glass, not followed"},
     {"truncated", &Ledger::truncated, "by cut-off lobes"},
     {"unshot", &Ledger::unshot, "still waiting"},
     {"sent", &Ledger::sent, "emitted and passed on"},
-    {"passed on", &Ledger::passed_on, "by mirrors"},
+    {"passed on", &Ledger::passed_on, "by mirrors and glass"},
     {"delivered", &Ledger::delivered, "of both, arrived"},
     {"reflected", &Ledger::reflected, "of that, reflected"},
 };
-constexpr size_t kBalanceEntries = 8;  ///< the first ones balance; the others are turnover
+constexpr size_t kBalanceEntries = 9;  ///< the first ones balance; the others are turnover
 
 double Sum(const Ledger::Power& power) { return power[0] + power[1] + power[2]; }
 
@@ -118,6 +119,7 @@ std::string LedgerText(const Ledger& ledger) {
   for (size_t i = 0; i < std::size(kLedger); ++i) {
     if (i == kBalanceEntries) table.AddRow({""});
     const Ledger::Power& p = ledger.*kLedger[i].power;
+    if (kLedger[i].power == &Ledger::in_glass && Sum(p) == 0) continue;
     table.AddRow({kLedger[i].name, Short(p[0]), Short(p[1]), Short(p[2]),
                   emitted > 0 ? Format("%.2f %%", 100 * Sum(p) / emitted) : "-", kLedger[i].meaning});
   }

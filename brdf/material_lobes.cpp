@@ -124,6 +124,7 @@ Rgb PartLobes::Albedo(float cos_theta_i) const {
 
 MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& options, TableCache& cache)
     : reflectance_(reflectance) {
+  glass_ = IsGlass(reflectance);
   const int cap = options.force_l_max >= 0 ? options.force_l_max : options.l_max;
   const int base_cap = std::min(kBaseDegreeCap, options.force_l_max >= 0 ? kBaseDegreeCap : cap);
   const int knots = ScalarTable::DefaultKnots(std::max(cap, kBaseDegreeCap));
@@ -229,10 +230,12 @@ Rgb MaterialLobes::TransmissionAlbedo(float cos_theta_i) const {
   return transmission_constant_ - transmission_slope_ * FineAngle(cos_theta_i).Read(fresnel_albedo_);
 }
 
-Rgb MaterialLobes::MirrorAlbedo(float cos_theta_i) const {
+Rgb MaterialLobes::SentOn(float cos_theta_i) const {
   const auto* gltf = std::get_if<MetallicRoughness>(&reflectance_);
-  if (kind_ != GlossKind::kMirror || !gltf) return Rgb::Zero();
-  return gltf->Fresnel(cos_theta_i);
+  if (!sends_on() || !gltf) return Rgb::Zero();
+  const Rgb fresnel = gltf->Fresnel(cos_theta_i);
+  if (!glass_) return fresnel;
+  return fresnel + gltf->UnderCoat(fresnel) * gltf->GlassColor();
 }
 
 }  // namespace lobe

@@ -79,10 +79,15 @@ class MaterialLobes {
   const IncidenceSpline& spline() const { return *spline_; }  ///< common to both parts; not for diffuse()
   int max_degree() const { return std::max(base.l_max, gloss.l_max); }
 
-  /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it.
+  /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it, nor what
+  /// glass lets on.
   Rgb Albedo(float cos_theta_i) const;
-  /// Fraction reflected by the ideal mirror coat; 0 unless kind() is kMirror.
-  Rgb MirrorAlbedo(float cos_theta_i) const;
+  /// Ideal glass (IsGlass), with or without a coat.
+  bool glass() const { return glass_; }
+  /// Some light goes on as a ray: by an ideal mirror coat, or through glass.
+  bool sends_on() const { return glass_ || kind_ == GlossKind::kMirror; }
+  /// Fraction that does, from outside in air; 0 unless sends_on().
+  Rgb SentOn(float cos_theta_i) const;
   Rgb DiffuseAlbedo() const { return diffuse_albedo_; }  ///< reflected; for diffuse() materials
 
   /// Light passes to the other side. Such a material always has a base (a black one at least), since that
@@ -97,7 +102,7 @@ class MaterialLobes {
  private:
   GlossKind kind_ = GlossKind::kNone;
   Reflectance reflectance_;
-  bool diffuse_ = true;
+  bool diffuse_ = true, glass_ = false;
   Rgb diffuse_albedo_ = Rgb::Zero();
   bool transmits_ = false;
   // TransmissionAlbedo is the constant less the slope times Fresnel's albedo, on ScalarTable's fine grid;

@@ -181,7 +181,7 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
           paths_.SampleLamp(vertex, sampler, uint64_t(choice[0]) << 32, place[0], place[1]);
       if (lamp.light_pdf > 0) {
         ++task.work.rays;
-        *way.direct += next.throughput * lamp.value * paths_.Visible(lamp.shadow) *
+        *way.direct += next.throughput * lamp.value * paths_.Visible(lamp.shadow, way.media.top()) *
                        PowerWeight(lamp.light_pdf, lamp.direction_pdf);
       }
     }
@@ -203,6 +203,7 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
       const RayHit hit = paths_.specular().IntersectPastPanes(tracer, &last, &passed);
       if (!hit.hit() || !paths_.Emits(hit)) continue;
       const float distance = (last.origin - scattered.ray.origin).norm() + hit.t;
+      passed *= paths_.specular().Transmittance(way.media.top(), distance);
       const float weight =
           PowerWeight(scattered.pdf, paths_.LightPdf(hit.face, -scattered.ray.direction, distance));
       *way.direct +=

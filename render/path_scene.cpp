@@ -28,7 +28,13 @@ void FoldSquare(float* u, float* v) {
 
 PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
   for (const Material& m : scene.materials) {
-    surfaces_.push_back({ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided});
+    const auto kind = specular_.kind(uint32_t(surfaces_.size()));
+    const auto* glass = m.glass() ? std::get_if<MetallicRoughness>(&m.reflectance) : nullptr;
+    const float base_mean =
+        glass ? (glass->UnderCoat(glass->F0()) * (glass->DiffuseColor() + glass->TransmissionColor())).mean()
+              : 0.0f;
+    surfaces_.push_back(
+        {ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided, kind, base_mean});
   }
 
   // Of faces at one place rays meet only some; lamps no ray can meet must not be sampled either.
@@ -127,7 +133,7 @@ PathScene::LampSample PathScene::SampleLamp(const Vertex& vertex, const Reflecta
 
   const Vec3 from = vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above);
   const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
-  out.shadow = {from, 0, to - from, 1};
+  out.shadow = {from, 0, to - from, 1};  // Visible takes its length for the way
   out.light_pdf = lamp.light_density * distance2 * distance / std::abs(towards);
   out.direction_pdf = value.pdf;
   out.value = value.f * surfaces_[lamp.material].emission * (std::abs(wi_local.z()) / out.light_pdf);
@@ -149,7 +155,7 @@ PathScene::Scattered PathScene::Scatter(const Vertex& vertex, const ReflectanceS
   if (!(above * next.wi.z() > 0)) return out;
   out.alive = true;
   out.weight = next.weight;
-  out.pdf = next.delta ? 0 : next.pdf;
+  (next.delta ? out.delta_chance : out.pdf) = next.pdf;
   out.ray = {vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above), 0, wi, kInfinity};
   return out;
 }

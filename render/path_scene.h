@@ -27,6 +27,8 @@ class PathScene {
     ReflectanceSampler sampler;
     Rgb emission;
     bool emits, double_sided;
+    SpecularSurfaces::Kind specular;
+    float base_mean;  ///< of glass: albedo under the coat, mean of channels
   };
 
   /// Where a path scatters.
@@ -47,8 +49,9 @@ class PathScene {
   /// A ray that goes on from a vertex.
   struct Scattered {
     Rgb weight = Rgb::Zero();
-    float pdf = 0;       ///< of its direction; 0: shadow rays cannot come where it leads (ideal reflection)
-    bool alive = false;  ///< false: the path ends here
+    float pdf = 0;  ///< of its direction; 0: shadow rays cannot come where it leads (ideal reflection)
+    float delta_chance = 0;  ///< of an ideal reflection, with which it was chosen; else 0
+    bool alive = false;      ///< false: the path ends here
     Ray ray;
   };
 
@@ -77,10 +80,17 @@ class PathScene {
   /// [0, 1)).
   LampSample SampleLamp(const Vertex& vertex, const ReflectanceSampler& sampler, uint64_t lamp, float u,
                         float v) const;
-  /// What comes along a shadow ray: 1 if it is free, 0 if it is blocked, and between them through panes.
-  Rgb Visible(const Ray& shadow) const {
-    if (specular_.any_pane()) return specular_.SeeThrough(tracer_, shadow);
-    return Rgb::Constant(tracer_.Occluded(shadow) ? 0.0f : 1.0f);
+  /// What comes along a shadow ray through `medium` (a material, or kNone: air): nothing if it is blocked,
+  /// else what the medium and panes on the way let through.
+  Rgb Visible(const Ray& shadow, uint32_t medium) const {
+    Rgb visible = Rgb::Constant(1);
+    if (specular_.any_pane()) {
+      visible = specular_.SeeThrough(tracer_, shadow);
+    } else if (tracer_.Occluded(shadow)) {
+      return Rgb::Zero();
+    }
+    if (medium != kNone) visible *= specular_.Transmittance(medium, shadow.direction.norm());
+    return visible;
   }
   Scattered Scatter(const Vertex& vertex, const ReflectanceSampler& sampler, float u1, float u2,
                     float u3) const;

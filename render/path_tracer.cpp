@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -15,59 +16,121 @@ constexpr float kMostSurvival = 0.98f;  // so that a closed room of perfect mirr
 
 }  // namespace
 
+struct PathTracer::WalkState {
+  Rgb throughput = Rgb::Constant(1);
+  float direction_pdf = 0;  // of the direction that led here; 0: shadow rays could not have come here
+  float distance = 0;       // from where that direction began, through panes
+  float in_air = 1;         // radiance in air of throughput 1: what roulette goes by
+  MediaStack media;
+
+  void Start(float pdf) {
+    direction_pdf = pdf;
+    distance = 0;
+  }
+};
+
 PathTracer::PathTracer(const Scene& scene, const PathTracerOptions& options)
     : options_(options), scene_(scene) {}
 
-Rgb PathTracer::LampLight(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler,
+Rgb PathTracer::LampLight(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler, uint32_t medium,
                           RandomStream& random, uint64_t* traced) const {
   const uint64_t lamp = random.NextBits();
   const float u = random.Next(), v = random.Next();
   const PathScene::LampSample sample = scene_.SampleLamp(vertex, sampler, lamp, u, v);
   if (sample.light_pdf == 0) return Rgb::Zero();
   ++*traced;
-  if (scene_.tracer().Occluded(sample.shadow)) return Rgb::Zero();
+  const Rgb light = sample.value * scene_.Visible(sample.shadow, medium);
   return options_.light_sampling == LightSampling::kBoth
-             ? Rgb(sample.value * PowerWeight(sample.light_pdf, sample.direction_pdf))
-             : sample.value;
+             ? Rgb(light * PowerWeight(sample.light_pdf, sample.direction_pdf))
+             : light;
+}
+
+// One way on from glass: reflected or transmitted, or scattered by its base.
+bool PathTracer::PassGlass(const PathScene::Vertex& vertex, const RayHit& hit, const Vec3& wo, bool has_base,
+                           RandomStream& random, WalkState* walk, PathScene::Scattered* next) const {
+  const PathScene::Surface& surface = scene_.surface(hit.face);
+  const HitPoint at{vertex.position, vertex.normal, vertex.frame.z};
+  const SpecularWays ways =
+      scene_.specular().Continue(scene_.material(hit.face), hit.side, at, wo, walk->media);
+  const Rgb reflected = ways.reflection.weight;
+  const float passes = ways.transmission.weight.mean() / ways.basic;
+  const float stays = reflected.mean() + (has_base ? surface.base_mean : 0.0f);
+  if (!(passes + stays > 0)) return false;
+  const float chance = passes / (passes + stays);
+  const bool through = random.Next() < chance;
+  walk->throughput /= through ? chance : 1 - chance;
+  if (!through && has_base) {
+    const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
+    *next = scene_.Scatter(vertex, surface.sampler, u1, u2, u3);
+    // In other glass a coat reflects otherwise than the sampler knows.
+    if (next->delta_chance > 0) next->weight = reflected / next->delta_chance;
+    walk->Start(next->pdf);
+    return next->alive;
+  }
+  const SpecularWay& on = through ? ways.transmission : ways.reflection;
+  next->weight = on.weight;
+  next->ray = {vertex.position + on.outward * scene_.tracer().epsilon(), 0, on.direction,
+               std::numeric_limits<float>::infinity()};
+  if (through) {
+    walk->media = ways.beyond;
+    walk->in_air /= ways.basic;
+  }
+  if (!through || !ways.straight) walk->Start(0);
+  return true;
 }
 
 Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emission,
                      const ReflectanceSampler* first, RandomStream& random, uint64_t* rays) const {
   const bool by_light = options_.light_sampling != LightSampling::kDirections && scene_.has_lamps();
-  Rgb radiance = Rgb::Zero(), throughput = Rgb::Constant(1);
+  Rgb radiance = Rgb::Zero();
+  WalkState walk;
   RayHit hit = start;
   Vec3 wo = wo_start;
   uint64_t traced = 0;
-  float direction_pdf = 0;  // of the direction that led here; 0: shadow rays could not have come here
   for (int bounce = 0; hit.hit(); ++bounce) {
     const PathScene::Surface& surface = scene_.surface(hit.face);
     const bool forced = bounce == 0 && first;  // the caller says how this surface reflects
-    if (hit.side == Side::kBack && !surface.double_sided && !forced) break;
-    if (surface.emits && (bounce > 0 || count_emission)) {
+    const bool front = hit.side == Side::kFront;
+    const bool glass = surface.specular >= SpecularSurfaces::Kind::kPane && !forced;
+    const bool inside = !front && glass && surface.specular == SpecularSurfaces::Kind::kBody;
+    if (!front && !surface.double_sided && !forced && !inside) break;
+    walk.distance += hit.t;
+    if (scene_.specular().any_body()) {
+      walk.throughput *=
+          scene_.specular().Transmittance(walk.media, scene_.material(hit.face), hit.side, hit.t);
+    }
+    if (surface.emits && (bounce > 0 || count_emission) && (front || surface.double_sided)) {
       float weight = 1;
-      if (direction_pdf > 0 && by_light) {
+      if (walk.direction_pdf > 0 && by_light) {
         weight = options_.light_sampling == LightSampling::kBoth
-                     ? PowerWeight(direction_pdf, scene_.LightPdf(hit.face, wo, hit.t))
+                     ? PowerWeight(walk.direction_pdf, scene_.LightPdf(hit.face, wo, walk.distance))
                      : 0;
       }
-      radiance += throughput * (weight * surface.emission);
+      radiance += walk.throughput * (weight * surface.emission);
     }
     const ReflectanceSampler& sampler = forced ? *first : surface.sampler;
-    if (sampler.black() || bounce >= options_.max_bounces) break;
+    if ((sampler.black() && !glass) || bounce >= options_.max_bounces) break;
 
     const PathScene::Vertex vertex = scene_.VertexAt(hit, wo);
-    if (by_light) radiance += throughput * LampLight(vertex, sampler, random, &traced);
-
-    const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
-    const PathScene::Scattered next = scene_.Scatter(vertex, sampler, u1, u2, u3);
-    if (!next.alive) break;
-    throughput *= next.weight;
-    if (bounce >= kRouletteAfter) {
-      const float survival = std::min(throughput.maxCoeff(), kMostSurvival);
-      if (!(random.Next() < survival)) break;
-      throughput /= survival;
+    const bool has_base = !glass || (!inside && surface.base_mean > 0);
+    if (by_light && has_base) {
+      radiance += walk.throughput * LampLight(vertex, sampler, walk.media.top(), random, &traced);
     }
-    direction_pdf = next.pdf;
+    PathScene::Scattered next;
+    if (glass) {
+      if (!PassGlass(vertex, hit, wo, has_base, random, &walk, &next)) break;
+    } else {
+      const float u1 = random.Next(), u2 = random.Next(), u3 = random.Next();
+      next = scene_.Scatter(vertex, sampler, u1, u2, u3);
+      if (!next.alive) break;
+      walk.Start(next.pdf);
+    }
+    walk.throughput *= next.weight;
+    if (bounce >= kRouletteAfter) {
+      const float survival = std::min(walk.throughput.maxCoeff() * walk.in_air, kMostSurvival);
+      if (!(random.Next() < survival)) break;
+      walk.throughput /= survival;
+    }
     hit = scene_.tracer().Intersect(next.ray);
     ++traced;
     wo = -next.ray.direction;

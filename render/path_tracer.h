@@ -46,6 +46,10 @@ struct Estimate {
 /// Backs are black and opaque; doubleSided faces have two sides, and thin sheets pass light from one of them
 /// to the other. Interpolated normals: render/path_scene.h.
 ///
+/// Glass is ideal (scene/specular.h). Reflection, transmission and base are chosen by their weights. Straight
+/// ways through panes keep the density of the direction they began with, so that lamps behind panes are met
+/// both by directions and by shadow rays; what has been refracted only by directions.
+///
 /// Keeps what it needs of the scene. Const methods may run in many threads.
 class PathTracer {
  public:
@@ -67,10 +71,14 @@ class PathTracer {
   const RayTracer& tracer() const { return scene_.tracer(); }
 
  private:
+  struct WalkState;
+
   // One sample of the light straight from lamps, scattered towards the vertex's wo; weighed against
-  // directions.
-  Rgb LampLight(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler, RandomStream& random,
-                uint64_t* traced) const;
+  // directions. It comes through `medium`, and through panes.
+  Rgb LampLight(const PathScene::Vertex& vertex, const ReflectanceSampler& sampler, uint32_t medium,
+                RandomStream& random, uint64_t* traced) const;
+  bool PassGlass(const PathScene::Vertex& vertex, const RayHit& hit, const Vec3& wo, bool has_base,
+                 RandomStream& random, WalkState* walk, PathScene::Scattered* next) const;
   // One path. `first`: how the surface it starts from scatters, if not as its material says.
   Rgb Walk(const RayHit& start, const Vec3& wo, bool count_emission, const ReflectanceSampler* first,
            RandomStream& random, uint64_t* rays) const;

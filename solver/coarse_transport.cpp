@@ -92,8 +92,7 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
           } else if (Links::IsChain(link)) {
             for (const Links::Hop* hop = links.chain(link);; ++hop) {
               if (Links::IsNode(hop->node)) {
-                row[cluster_[mesh.node_patch[hop->node]]] +=
-                    weight * (hop->fresnel[0] + hop->fresnel[1] + hop->fresnel[2]) / (3 * 65535.0);
+                row[cluster_[mesh.node_patch[hop->node]]] += weight * double(hop->Throughput().sum()) / 3;
               }
               if (hop->last) break;
             }

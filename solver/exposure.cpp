@@ -15,7 +15,7 @@
 
 #include "brdf/frame.h"
 #include "scene/input_error.h"
-#include "scene/mirror.h"
+#include "scene/specular.h"
 #include "solver/hash.h"
 #include "solver/links.h"
 
@@ -90,6 +90,17 @@ std::vector<uint32_t> ConnectedPieces(const Scene& scene) {
   }
   for (uint32_t f = 0; f < parent.size(); ++f) parent[f] = find(f);
   return parent;
+}
+
+// Does light go on from one side to the other?
+bool LetsThrough(const Material& material) { return material.transmits() || material.glass(); }
+
+// Clear glass sends all light on, and the inside of a body has no base.
+bool StoresLight(const Material& material, Side side) {
+  if (!material.glass()) return true;
+  if (material.body() && side == Side::kBack) return false;
+  const auto& m = std::get<MetallicRoughness>(material.reflectance);
+  return material.emits() || material.transmits() || (m.DiffuseColor() > 0).any();
 }
 
 // Where light arrives or starts; `side` is 2 * piece + side.
@@ -168,7 +179,10 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
   std::vector<bool> lit_piece(2 * scene.faces.size(), false);  // 2 * piece + side
   for (const auto& e : emitters) lit_piece[2 * piece[e.face] + size_t(e.side)] = true;
 
-  const auto double_sided = [&](uint32_t f) { return scene.material(scene.faces[f]).double_sided; };
+  const auto double_sided = [&](uint32_t f) {
+    const Material& material = scene.material(scene.faces[f]);
+    return material.double_sided || material.glass();
+  };
   std::vector<LitPoint> points;  // of the last round
   for (int round = 0; round < kMaxRounds; ++round) {
     // Each walk lists the sides it met; merged afterwards, so that threads share nothing.
@@ -190,7 +204,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
         if (hit.side == Side::kBack) normal = -normal;
         const uint32_t met_side = 2 * piece[hit.face] + uint32_t(hit.side);
         met[walk].push_back({met_side, at, normal});
-        if (scene.material(scene.faces[hit.face]).transmits()) {
+        if (LetsThrough(scene.material(scene.faces[hit.face]))) {
           met[walk].push_back({met_side ^ 1, at, -normal});
           // However little goes through, what lies behind is lit; so a coin decides, not the albedo.
           if (random.Next() < 0.5f) normal = -normal;
@@ -230,7 +244,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
       if (!sightings[i]) continue;
       const uint32_t side = aims[i].first;
       lit_piece[side] = true;
-      if (!scene.material(scene.faces[sightings[i]->face]).transmits()) continue;
+      if (!LetsThrough(scene.material(scene.faces[sightings[i]->face]))) continue;
       lit_piece[side ^ 1] = true;
       points.push_back({side ^ 1, sightings[i]->position, -sightings[i]->normal});
     }
@@ -238,22 +252,26 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
 
   std::vector<bool> lit(2 * scene.faces.size());
   for (size_t f = 0; f < scene.faces.size(); ++f) {
-    const bool through = scene.material(scene.faces[f]).transmits();
+    const Material& material = scene.material(scene.faces[f]);
+    const bool through = LetsThrough(material);
     for (size_t side = 0; side < 2; ++side) {
       lit[2 * f + side] = lit_piece[2 * piece[f] + side] || (through && lit_piece[2 * piece[f] + (1 - side)]);
+      if (!StoresLight(material, Side(side))) lit[2 * f + side] = false;
     }
   }
   return lit;
 }
 
 EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
-                              const std::vector<const MaterialLobes*>& mirrors, uint64_t seed) {
+                              const std::vector<const MaterialLobes*>& mirrors, uint64_t seed,
+                              bool through_glass) {
   constexpr int kProbes = 1 << 14;
   const auto emitters = FindEmitters(scene);
   const EmitterChoice choice(emitters);
+  const SpecularSurfaces specular(scene);
   struct Fate {
     size_t emitter;
-    Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero();
+    Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero(), in_glass = Rgb::Zero();
   };
   std::vector<Fate> fates(kProbes);
   tbb::parallel_for(0, kProbes, [&](int i) {
@@ -264,24 +282,55 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
     Ray ray =
         RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.epsilon());
     Rgb throughput = Rgb::Constant(1);
-    for (int mirror = 0; mirror <= Links::kMaxMirrors; ++mirror) {
+    MediaStack media;
+    for (int mirror = 0, glass = 0; mirror <= Links::kMaxMirrors && glass <= Links::kMaxGlass;) {
       const RayHit hit = tracer.Intersect(ray);
+      const uint32_t material = hit.hit() ? scene.faces[hit.face].material : kNone;
+      if (specular.any_body()) {
+        const float metres = hit.hit() ? hit.t : std::numeric_limits<float>::infinity();
+        const Rgb passed = specular.Transmittance(media, material, hit.side, metres);
+        fate.in_glass += throughput * (1 - passed);
+        throughput *= passed;
+      }
       if (!hit.hit()) {
-        fate.escaped = throughput;
+        fate.escaped += throughput;
         return;
       }
       const auto where = mesh.Locate(hit.face, hit.side, hit.u, hit.v);
+      if (specular.glass(material)) {
+        const HitPoint at = FindHitPoint(scene, ray, hit);
+        const SpecularWays ways = specular.Continue(material, hit.side, at, -ray.direction, media);
+        Rgb reflected = ways.reflection.weight;
+        const Rgb passed = ways.transmission.weight / ways.basic;
+        if (where.element == kNone) fate.in_glass += throughput * (1 - reflected - passed);
+        if (!through_glass) {
+          fate.blocked += throughput * (ways.straight ? reflected : Rgb(reflected + passed));
+          reflected = Rgb::Zero();
+          if (!ways.straight) return;
+        }
+        const float reflects = reflected.mean(), passes = passed.mean();
+        if (!(reflects + passes > 0)) return;
+        const float chance = passes / (reflects + passes);
+        const bool through = random.Next() < chance;
+        throughput *= through ? Rgb(passed / chance) : Rgb(reflected / (1 - chance));
+        const SpecularWay& on = through ? ways.transmission : ways.reflection;
+        if (through) media = ways.beyond;
+        ray = RayFrom(at.position, on.outward, on.direction, tracer.epsilon());
+        ++glass;
+        continue;
+      }
       if (where.element == kNone) {
-        fate.blocked = throughput;
+        fate.blocked += throughput;
         return;
       }
-      const MaterialLobes* lobes = mirrors[scene.faces[hit.face].material];
+      const MaterialLobes* lobes = mirrors[material];
       if (!lobes) return;
       const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
-      throughput *= lobes->MirrorAlbedo(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
+      throughput *= lobes->SentOn(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
       ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at), tracer.epsilon());
+      ++mirror;
     }
-    fate.blocked = throughput;
+    fate.blocked += throughput;
   });
   // Every probe carries the same power, in the colours of its emitter.
   EmissionLoss out;
@@ -292,9 +341,11 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
     all += share.cast<double>();
     out.escaped += (share * fate.escaped).cast<double>();
     out.blocked += (share * fate.blocked).cast<double>();
+    out.in_glass += (share * fate.in_glass).cast<double>();
   }
   out.escaped = (all > 0).select(out.escaped / all, 0.0);
   out.blocked = (all > 0).select(out.blocked / all, 0.0);
+  out.in_glass = (all > 0).select(out.in_glass / all, 0.0);
   return out;
 }
 

@@ -9,22 +9,23 @@ namespace lobe {
 
 /// Where the power went, watts, per channel. Every entry is computed from its own cause, none as the
 /// rest, so that the balance is a check:
-///   emitted + imbalance = absorbed + blocked + escaped + mirrored + truncated + unshot.
+///   emitted + imbalance = absorbed + in_glass + blocked + escaped + mirrored + truncated + unshot.
 struct Ledger {
   using Power = std::array<double, 3>;
   Power emitted{};    ///< pi Le A over the emitting triangles
   Power sent{};       ///< emitted, and unshot light that steps have moved on
   Power delivered{};  ///< irradiance x area, summed over receiving nodes
   Power absorbed{};   ///< delivered x (1 - albedo), angle by angle
+  Power in_glass{};  ///< absorbed by coloured glass on the way between nodes, where no node of it counts that
   Power reflected{};  ///< reflected, or let through sheets: flux of the lobes that delivered light made
-  Power mirrored{};   ///< reflected by ideal mirrors, where shooting stops
-  Power passed_on{};  ///< reflected by ideal mirrors and carried on by links
+  Power mirrored{};   ///< sent on by ideal mirrors and glass, where shooting stops
+  Power passed_on{};  ///< sent on by ideal mirrors and glass, and carried on by links
   Power truncated{};  ///< delivered - absorbed - reflected - by mirrors: what the lobes' tables lose
   Power escaped{};    ///< sent along rays that leave the scene
-  Power blocked{};    ///< sent to black backs, to sides without nodes, and beyond Links::kMaxMirrors mirrors
+  Power blocked{};    ///< sent to black backs, to sides without nodes, beyond Links::kMaxMirrors, kMaxGlass
   Power unshot{};     ///< still waiting at the end
-  /// Delivered minus (sent + passed_on - escaped - blocked): point collocation does not conserve power. Tends
-  /// to 0 as the mesh is refined.
+  /// Delivered minus (sent + passed_on - escaped - blocked - in_glass): point collocation does not conserve
+  /// power. Tends to 0 as the mesh is refined.
   Power imbalance{};
 
   double Closure() const;  ///< |emitted + imbalance - ...| / emitted, luminance-free sum of channels

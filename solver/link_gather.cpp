@@ -144,7 +144,7 @@ Received LinkReceiver::Gather(uint32_t node, const LinkField& field, int thinnin
     }
     work.delivered += irradiance;
     const float cosine = directions.CosTheta(r);
-    if (material.kind() == GlossKind::kMirror) work.mirrored += irradiance * material.MirrorAlbedo(cosine);
+    if (material.sends_on()) work.mirrored += irradiance * material.SentOn(cosine);
     if (material.transmits()) work.through += irradiance * material.TransmissionAlbedo(cosine);
     if (diffuse) continue;
     work.lobe_writes += count;

@@ -11,7 +11,7 @@
 
 #include "brdf/frame.h"
 #include "scene/element_locator.h"
-#include "scene/mirror.h"
+#include "scene/specular.h"
 #include "solver/hash.h"
 
 namespace lobe {
@@ -57,6 +57,14 @@ Vec3 UnpackDirection(uint32_t packed) {
   return Vec3(x, y, z).normalized();
 }
 
+void Links::Hop::SetThroughput(const Rgb& throughput) {
+  float unit = 1;
+  for (scale = 0; throughput.maxCoeff() > unit && scale < 15; ++scale) unit *= 2;
+  for (int c = 0; c < 3; ++c) {
+    fresnel[c] = uint16_t(std::lround(std::clamp(throughput[c] / unit, 0.0f, 1.0f) * 65535));
+  }
+}
+
 // What the threads share while tracing, and each one's scratch.
 struct Links::Tracing {
   const Scene& scene;
@@ -65,10 +73,27 @@ struct Links::Tracing {
   const RayTracer& tracer;
   const std::vector<MaterialLobes>& materials;
   const Options& options;
-  std::vector<uint8_t> mirror = {};  // per material: links go on there
-  bool any_mirror = false;
+  const SpecularSurfaces specular{scene};
+  std::vector<uint8_t> mirror = {};       // per material: links go on there, being opaque
+  std::vector<uint8_t> specular_at = {};  // per material: mirror or glass
+  bool any_specular = false;
+
+  // A way still to be followed.
+  struct Branch {
+    Ray ray;
+    RayHit hit;
+    Rgb throughput = Rgb::Constant(1);  // of radiance
+    float basic = 1;                    // of it, the square of the indices' ratio
+    float share = 1;                    // of the link's power, as if choices were splits
+    MediaStack media = {};
+    int mirrors = 0, glass = 0;
+    uint32_t last_mirror = kNone;  // patch
+    bool bent = false;             // no shadow ray comes this way: reflected by glass, or refracted
+    Rgb Power() const { return throughput / basic; }
+  };
 
   struct Scratch {
+    std::vector<Branch> branches;
     std::vector<float> x, y, z;  // directions
     std::vector<RayHit> hits;
     std::vector<Mesh::Location> where;
@@ -111,7 +136,8 @@ struct Links::Tracing {
         continue;
       }
       const Mesh::Location& where = scratch.where[i];
-      if (any_mirror && where.element != kNone && mirror[scene.faces[hit.face].material]) {
+      const uint32_t material = any_specular ? scene.faces[hit.face].material : 0;
+      if (any_specular && specular_at[material] && (where.element != kNone || specular.glass(material))) {
         const Ray ray{origin, 0.0f, {scratch.x[i], scratch.y[i], scratch.z[i]}, hit.t};
         out[i] = TraceChain(ray, hit, random, scratch, hops);
       } else {
@@ -120,49 +146,136 @@ struct Links::Tracing {
     }
   }
 
-  // Follows mirrors from the first on; returns the link.
-  uint32_t TraceChain(Ray ray, RayHit hit, RandomStream& random, Scratch& scratch,
+  // Follows mirrors and glass from the first on; returns the link.
+  uint32_t TraceChain(const Ray& ray, const RayHit& hit, RandomStream& random, Scratch& scratch,
                       std::vector<Hop>& hops) const {
-    const uint32_t begin = uint32_t(hops.size());
-    Rgb throughput = Rgb::Constant(1);
-    uint32_t last_mirror = kNone;  // patch
-    for (int mirrors = 0;; ++mirrors) {
-      Hop hop{};
-      hop.direction = PackDirection(-ray.direction);
-      for (int c = 0; c < 3; ++c) {
-        hop.fresnel[c] = uint16_t(std::lround(std::clamp(throughput[c], 0.0f, 1.0f) * 65535));
+    const size_t begin = hops.size();
+    Rgb absorbed = Rgb::Zero();
+    scratch.branches.push_back({.ray = ray, .hit = hit});
+    while (!scratch.branches.empty()) {
+      Branch branch = scratch.branches.back();
+      scratch.branches.pop_back();
+      while (Advance(branch, random, scratch, hops, &absorbed)) {
+        branch.hit = tracer.Intersect(branch.ray);
+        ++scratch.traced;
       }
-      if (!hit.hit()) {
-        hop.node = kEscaped;
-        hop.last = 1;
-        hops.push_back(hop);
-        break;
-      }
-      const Face& face = scene.faces[hit.face];
-      const auto where = locator.Locate(hit);
-      hop.node = End(where, random);
-      // Straight emission travels by shooting, and by way of one planar mirror too.
-      const bool by_shooting = mirrors == 0 || (mirrors == 1 && ShotByMirror(last_mirror, face));
-      hop.emission = !by_shooting && hop.node != kBlocked && scene.materials[face.material].emits();
-      const bool goes_on = hop.node != kBlocked && mirror[face.material];
-      if (!goes_on || mirrors == kMaxMirrors) {
-        hop.cut = goes_on;
-        hop.last = 1;
-        hops.push_back(hop);
-        break;
-      }
-      if (materials[face.material].base.l_max >= 0 || hop.emission) hops.push_back(hop);
-
-      const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
-      const Vec3 wo = -ray.direction;
-      throughput *= materials[face.material].MirrorAlbedo(std::clamp(wo.dot(at.normal), 0.0f, 1.0f));
-      ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),
-             std::numeric_limits<float>::infinity()};
-      hit = tracer.Intersect(ray);
-      ++scratch.traced;
-      last_mirror = mesh.element_patch[where.element];
     }
-    return kChain | begin;
+    if ((absorbed > 0).any() || hops.size() == begin) AddLost(kAbsorbed, absorbed, hops);
+    hops.back().last = 1;
+    return kChain | uint32_t(begin);
+  }
+
+  static void AddLost(uint32_t how, const Rgb& power, std::vector<Hop>& hops) {
+    Hop hop{};
+    hop.node = how;
+    hop.end = 1;
+    hop.SetThroughput(power);
+    hops.push_back(hop);
+  }
+
+  // From a branch's hit to its next ray; false where it ends.
+  bool Advance(Branch& branch, RandomStream& random, Scratch& scratch, std::vector<Hop>& hops,
+               Rgb* absorbed) const {
+    const RayHit& hit = branch.hit;
+    const uint32_t material = hit.hit() ? scene.faces[hit.face].material : kNone;
+    const Side side = hit.side;
+    if (specular.any_body()) {
+      const float metres =
+          hit.hit() ? hit.t * branch.ray.direction.norm() : std::numeric_limits<float>::infinity();
+      const Rgb passed = specular.Transmittance(branch.media, material, side, metres);
+      *absorbed += branch.Power() * (1 - passed);
+      branch.throughput *= passed;
+      if ((branch.throughput <= 0).all()) return false;
+    }
+    if (!hit.hit()) {
+      AddLost(kEscaped, branch.Power(), hops);
+      return false;
+    }
+    const Face& face = scene.faces[hit.face];
+    const auto where = locator.Locate(hit);
+    Hop hop{};
+    hop.direction = PackDirection(-branch.ray.direction);
+    hop.SetThroughput(branch.throughput);
+    hop.node = End(where, random);
+    // Straight emission travels by shooting, and by way of one planar mirror too; panes do not hinder it.
+    const bool by_shooting =
+        !branch.bent &&
+        (branch.mirrors == 0 || (branch.mirrors == 1 && ShotByMirror(branch.last_mirror, face)));
+    hop.emission = !by_shooting && hop.node != kBlocked && scene.materials[material].emits();
+    const bool glass = specular.glass(material);
+    const bool goes_on = glass || (hop.node != kBlocked && mirror[material]);
+    const bool beyond = glass ? branch.glass == kMaxGlass : branch.mirrors == kMaxMirrors;
+    if (!goes_on || beyond) {
+      hop.cut = goes_on;
+      hop.end = 1;
+      if (hop.node == kBlocked) hop.SetThroughput(branch.Power());
+      hops.push_back(hop);
+      return false;
+    }
+    if (hop.node != kBlocked && (materials[material].base.l_max >= 0 || hop.emission)) hops.push_back(hop);
+    if (glass) return GoThroughGlass(branch, material, where, random, scratch, hops, absorbed);
+
+    const HitPoint at = FindHitPoint(scene, mesh, branch.ray, hit, where);
+    const Vec3 wo = -branch.ray.direction;
+    branch.throughput *= materials[material].SentOn(std::clamp(wo.dot(at.normal), 0.0f, 1.0f));
+    branch.ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),
+                  std::numeric_limits<float>::infinity()};
+    branch.last_mirror = mesh.element_patch[where.element];
+    ++branch.mirrors;
+    return true;
+  }
+
+  bool GoThroughGlass(Branch& branch, uint32_t material, const Mesh::Location& where, RandomStream& random,
+                      Scratch& scratch, std::vector<Hop>& hops, Rgb* absorbed) const {
+    const HitPoint at = FindHitPoint(scene, branch.ray, branch.hit);
+    SpecularWays ways = specular.Continue(material, branch.hit.side, at, -branch.ray.direction, branch.media);
+    const Rgb passed = ways.transmission.weight / ways.basic;
+    // Nodes count what their surface keeps; where there are none it is counted here.
+    if (where.element == kNone) *absorbed += branch.Power() * (1 - ways.reflection.weight - passed);
+    if (!options.follow_mirrors) {
+      AddLost(
+          kBlocked,
+          branch.Power() * (ways.straight ? ways.reflection.weight : Rgb(ways.reflection.weight + passed)),
+          hops);
+      ways.reflection.weight = Rgb::Zero();
+      if (!ways.straight) return false;
+    }
+
+    ++branch.glass;
+    const float reflects = ways.reflection.weight.mean(), passes = passed.mean();
+    if (!(reflects + passes > 0)) return false;
+    const auto reflect = [&](Branch& to, float weight) {
+      to.throughput *= ways.reflection.weight * weight;
+      to.bent = true;
+      to.ray = {at.position + ways.reflection.outward * tracer.epsilon(), 0.0f, ways.reflection.direction,
+                std::numeric_limits<float>::infinity()};
+    };
+    const auto transmit = [&](Branch& to, float weight) {
+      to.throughput *= ways.transmission.weight * weight;
+      to.basic *= ways.basic;
+      to.bent |= !ways.straight;
+      to.media = ways.beyond;
+      to.ray = {at.position + ways.transmission.outward * tracer.epsilon(), 0.0f, ways.transmission.direction,
+                std::numeric_limits<float>::infinity()};
+    };
+    if (branch.share * std::min(reflects, passes) >= kSplit) {
+      Branch other = branch;
+      other.share *= reflects;
+      reflect(other, 1);
+      other.hit = tracer.Intersect(other.ray);
+      ++scratch.traced;
+      scratch.branches.push_back(other);
+      branch.share *= passes;
+      transmit(branch, 1);
+      return true;
+    }
+    const float chance = passes / (reflects + passes);
+    if (random.Next() < chance) {
+      transmit(branch, 1 / chance);
+    } else {
+      reflect(branch, 1 / (1 - chance));
+    }
+    return true;
   }
 };
 
@@ -188,8 +301,9 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
 
   Tracing tracing{scene, mesh, ElementLocator(mesh), tracer, materials, options_};
   for (const auto& m : materials) {
-    tracing.mirror.push_back(options.follow_mirrors && m.kind() == GlossKind::kMirror);
-    tracing.any_mirror |= tracing.mirror.back() != 0;
+    tracing.mirror.push_back(options.follow_mirrors && m.kind() == GlossKind::kMirror && !m.glass());
+    tracing.specular_at.push_back(tracing.mirror.back() || m.glass());
+    tracing.any_specular |= tracing.specular_at.back() != 0;
   }
   const size_t nodes = mesh.node_count();
   const uint32_t blocks = uint32_t((nodes + kBlockOfNodes - 1) / kBlockOfNodes);
@@ -222,7 +336,7 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
     hops_.insert(hops_.end(), hops[b].begin(), hops[b].end());
     hops[b] = {};
   }
-  if (hops_.size() >= (kBlocked & ~kChain))
+  if (hops_.size() >= (kAbsorbed & ~kChain))
     throw std::length_error("more than 2^31 hops of links by mirrors");
   const auto resolve = [&](uint32_t& end) {
     if (!IsNode(end)) return;

@@ -23,34 +23,49 @@ namespace lobe {
 /// hat functions, so that light read through it is on average the interpolated light at the hit. What this
 /// adds in noise is small against that of sampling the hemisphere (docs/validation.md#links).
 ///
-/// Links follow ideal mirrors: a link that meets one is a chain of hops.
+/// Links follow ideal mirrors and glass (scene/specular.h): a link that meets one is a chain of hops. Where
+/// glass reflects and transmits, both ways are followed as long as they carry much, and the hops of all
+/// branches lie one after another; else one way is chosen at random, with a weight that makes up for the
+/// other.
 class Links {
  public:
   /// Values of a link that ends in no node.
   static constexpr uint32_t kEscaped = 0xffffffffu;  ///< leaves the scene
   static constexpr uint32_t kBlocked = 0xfffffffeu;  ///< black back, or a side without nodes
+  /// Of hops alone: their throughput is what glass on the way has absorbed, where no node of it counts that.
+  static constexpr uint32_t kAbsorbed = 0xfffffffdu;
   /// This bit marks the index of a chain's first hop instead of a node.
   static constexpr uint32_t kChain = 0x80000000u;
   static bool IsNode(uint32_t link) { return link < kChain; }
-  static bool IsLost(uint32_t link) { return link >= kBlocked; }
-  static bool IsChain(uint32_t link) { return link >= kChain && link < kBlocked; }
+  static bool IsLost(uint32_t link) { return link >= kAbsorbed; }
+  static bool IsChain(uint32_t link) { return link >= kChain && link < kAbsorbed; }
 
-  /// One surface on a link's way by mirrors. What arrives through the link is the sum over its hops of
-  /// throughput x radiance of `node` towards `wo`.
+  /// One surface on a link's way by mirrors and glass. What arrives through the link is the sum over its hops
+  /// of throughput x radiance of `node` towards `wo`. At lost ends the throughput is of power, without the
+  /// square of the index that radiance in glass has.
   struct Hop {
-    uint32_t node;          ///< or kEscaped, kBlocked
+    uint32_t node;          ///< or kEscaped, kBlocked, kAbsorbed
     uint32_t direction;     ///< packed wo, from this surface back along the way (UnpackDirection)
-    uint16_t fresnel[3];    ///< what the mirrors so far pass on, in 1 / 65535
+    uint16_t fresnel[3];    ///< what the surfaces so far pass on, in 2^scale / 65535
     uint16_t last : 1;      ///< ends the chain
+    uint16_t end : 1;       ///< ends a branch of it
     uint16_t emission : 1;  ///< the surface's own emission is read too: nothing else carries it here
-    uint16_t cut : 1;       ///< a mirror beyond kMaxMirrors: what it throws is lost
-    Rgb Throughput() const { return Rgb(float(fresnel[0]), float(fresnel[1]), float(fresnel[2])) / 65535.0f; }
+    uint16_t cut : 1;       ///< a mirror beyond kMaxMirrors, glass beyond kMaxGlass: what it sends on is lost
+    uint16_t scale : 4;     ///< 0 but where radiance grows: on its way out of glass, or by a random choice
+    Rgb Throughput() const {
+      return Rgb(float(fresnel[0]), float(fresnel[1]), float(fresnel[2])) / 65535.0f * float(1 << scale);
+    }
+    void SetThroughput(const Rgb& throughput);  ///< up to 32768; more is cut
   };
   static_assert(sizeof(Hop) == 16);
 
   /// Mirrors a link follows at most. A room of mirrors of reflectance 0.9 loses 0.9^16 = 19 % of what keeps
   /// between them; the ledger says how much it was.
   static constexpr int kMaxMirrors = 16;
+  /// Surfaces of glass a branch meets at most: what is reflected totally loses nothing there.
+  static constexpr int kMaxGlass = 64;
+  /// Glass splits a link if both ways carry at least this share of it, so into ten branches at most. (chosen)
+  static constexpr float kSplit = 0.1f;
 
   /// Fewer links than this for each coefficient of a glossy node's lobe, and noise shows as blotches
   /// (docs/validation.md#links).
@@ -62,7 +77,7 @@ class Links {
   struct Options {
     int links =
         1024;  ///< per diffuse node; glossy ones take kPerCoefficient for each coefficient if that is more
-    bool follow_mirrors = true;
+    bool follow_mirrors = true;  ///< and glass; else links pass panes alone, as shadow rays do
     uint64_t seed = 1;
     /// By way of these shooting brings light of small emitters: links leave that out.
     std::vector<PlanarMirror> planar_mirrors = {};

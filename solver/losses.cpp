@@ -27,15 +27,16 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
     const bool diffuse = total.degrees(n).diffuse();
     for (size_t i = 0; i < targets.size(); ++i) {
       if (Links::IsNode(targets[i])) continue;
-      Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero();
+      Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero(), in_glass = Rgb::Zero();
       if (Links::IsChain(targets[i])) {
         for (const Links::Hop* hop = links.chain(targets[i]);; ++hop) {
           const Rgb throughput = hop->Throughput();
           if (hop->node == Links::kEscaped) escaped += throughput;
-          if (hop->last && (hop->node == Links::kBlocked || hop->cut)) blocked += throughput;
+          if (hop->node == Links::kAbsorbed) in_glass += throughput;
+          if (hop->end && (hop->node == Links::kBlocked || hop->cut)) blocked += throughput;
           if (hop->last) break;
         }
-        if ((escaped + blocked <= 0).all()) continue;
+        if ((escaped + blocked + in_glass <= 0).all()) continue;
       } else {
         (targets[i] == Links::kEscaped ? escaped : blocked) = Rgb::Constant(1);
       }
@@ -53,6 +54,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
           weight;
       losses.escaped += power * escaped.cast<double>();
       losses.blocked += power * blocked.cast<double>();
+      losses.in_glass += power * in_glass.cast<double>();
     }
   });
   Losses out;
@@ -60,6 +62,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
     out.sent += l.sent;
     out.escaped += l.escaped;
     out.blocked += l.blocked;
+    out.in_glass += l.in_glass;
   }
   return out;
 }

@@ -18,7 +18,7 @@ std::vector<PlanarMirror> FindPlanarMirrors(const Mesh& mesh, const std::vector<
   for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
     const Mesh::Patch& patch = mesh.patches[p];
     if (patch.node_begin == patch.node_end || !patch.planar ||
-        materials[patch.material].kind() != GlossKind::kMirror)
+        materials[patch.material].kind() != GlossKind::kMirror || materials[patch.material].glass())
       continue;
     const Vec3& point = mesh.node_position[patch.node_begin];
     const Vec3& normal = mesh.node_sample_normal[patch.node_begin];

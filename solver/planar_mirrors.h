@@ -8,8 +8,8 @@
 
 namespace lobe {
 
-/// An ideal mirror that lies in one plane: a lamp seen in it is a lamp behind it, which shadow rays can aim
-/// at. Links would have to meet the lamp's picture by chance.
+/// An ideal opaque mirror that lies in one plane: a lamp seen in it is a lamp behind it, which shadow rays
+/// can aim at. Links would have to meet the lamp's picture by chance.
 struct PlanarMirror {
   uint32_t patch;
   Vec3 point, normal;  ///< of the plane, on the mirror's side

@@ -169,8 +169,13 @@ Rgb ShootingField::Radiance(uint32_t element, const float weight[3], const Vec3&
   return out;
 }
 
-Receiver::Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials)
-    : mesh_(mesh), tracer_(tracer), materials_(materials), basis_(kMaxBasisSize) {}
+Receiver::Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials,
+                   const SpecularSurfaces* specular)
+    : mesh_(mesh),
+      tracer_(tracer),
+      materials_(materials),
+      panes_(specular && specular->any_pane() ? specular : nullptr),
+      basis_(kMaxBasisSize) {}
 
 void Receiver::Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
                      const Vec3& normal, const Cell& parent) {
@@ -240,15 +245,22 @@ void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root,
 }
 
 Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
-  const RayHit hit = tracer_.Intersect(ray);
+  Rgb passed = Rgb::Constant(1);
+  Ray piece = ray;
+  const RayHit hit = panes_ ? panes_->IntersectPastPanes(tracer_, &piece, &passed) : tracer_.Intersect(ray);
   if (!hit.hit()) return Rgb::Zero();
   const auto where = mesh_.Locate(hit.face, hit.side, hit.u, hit.v);
   if (where.element == kNone || mesh_.element_patch[where.element] != mirror.patch) return Rgb::Zero();
-  const Vec3 at = ray.origin + ray.direction * hit.t + mirror.normal * tracer_.epsilon();
+  const Vec3 at = piece.origin + piece.direction * hit.t + mirror.normal * tracer_.epsilon();
   const Vec3 lamp = mirror.Image(ray.origin + ray.direction);
-  if (tracer_.Occluded({at, 0.0f, lamp - at, 1.0f})) return Rgb::Zero();
+  const Ray beyond{at, 0.0f, lamp - at, 1.0f};
+  if (panes_) {
+    passed *= panes_->SeeThrough(tracer_, beyond);
+  } else if (tracer_.Occluded(beyond)) {
+    return Rgb::Zero();
+  }
   const float cosine = -ray.direction.normalized().dot(mirror.normal);
-  return materials_[mesh_.patches[mirror.patch].material].MirrorAlbedo(std::clamp(cosine, 0.0f, 1.0f));
+  return materials_[mesh_.patches[mirror.patch].material].SentOn(std::clamp(cosine, 0.0f, 1.0f)) * passed;
 }
 
 bool Receiver::EmitEvenly(const ShootingField::Root& root, uint32_t node, int samples, RandomStream& random) {
@@ -361,8 +373,14 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
   if (rays_.empty()) return work;
 
   occluded_.resize(rays_.size());
-  if (field.mirrors().empty()) {
+  if (field.mirrors().empty() && !panes_) {
     tracer_.Occluded(rays_, occluded_, /*coherent=*/true);
+  } else if (field.mirrors().empty()) {
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      const Rgb passed = panes_->SeeThrough(tracer_, rays_[i]);
+      deltas_[i].irradiance *= passed;
+      occluded_[i] = (passed <= 0).all();
+    }
   } else {
     for (size_t i = 0; i < rays_.size(); ++i) {
       deltas_[i].irradiance *= ByMirror(field.mirrors()[deltas_[i].mirror], rays_[i]);
@@ -377,8 +395,8 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
     for (size_t i = 0; i < deltas_.size(); ++i) {
       if (occluded_[i]) continue;
       work.delivered += deltas_[i].irradiance;
-      if (material.kind() == GlossKind::kMirror) {
-        work.mirrored += deltas_[i].irradiance * material.MirrorAlbedo(deltas_[i].direction.dot(normal));
+      if (material.sends_on()) {
+        work.mirrored += deltas_[i].irradiance * material.SentOn(deltas_[i].direction.dot(normal));
       }
       if (material.transmits()) {
         work.through += deltas_[i].irradiance * material.TransmissionAlbedo(deltas_[i].direction.dot(normal));
@@ -399,8 +417,8 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
       ++work.lobe_writes;
       work.delivered += deltas_[i].irradiance;
       work.reflected += deltas_[i].irradiance * material.Albedo(wi.z());
-      if (material.kind() == GlossKind::kMirror) {
-        work.mirrored += deltas_[i].irradiance * material.MirrorAlbedo(wi.z());
+      if (material.sends_on()) {
+        work.mirrored += deltas_[i].irradiance * material.SentOn(wi.z());
       }
       if (material.transmits()) work.through += deltas_[i].irradiance * material.TransmissionAlbedo(wi.z());
     }

@@ -8,6 +8,7 @@
 #include "brdf/incident_moments.h"
 #include "brdf/material_lobes.h"
 #include "scene/ray_tracer.h"
+#include "scene/specular.h"
 #include "solver/exposure.h"
 #include "solver/form_factor.h"
 #include "solver/hash.h"
@@ -61,7 +62,9 @@ class ShootingField {
 /// (Cohen and Wallace, Radiosity and Realistic Image Synthesis, fig. 10.15). One per thread; holds scratch.
 class Receiver {
  public:
-  Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials);
+  /// `specular`: shadow rays pass its panes. Null: all faces are opaque.
+  Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials,
+           const SpecularSurfaces* specular = nullptr);
 
   /// Cuts `field` into about `samples` delta areas, more where more light is expected to come from, traces
   /// one shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes,
@@ -90,7 +93,8 @@ class Receiver {
     Rgb irradiance;
     uint32_t mirror;
   };
-  // Fresnel factor of the way over `mirror` to the image that a ray ends at; black where something is in it.
+  // Fresnel factor of the way over `mirror` to the image that a ray ends at, times what panes in it let
+  // through; black where something else is in it.
   Rgb ByMirror(const PlanarMirror& mirror, const Ray& ray) const;
   void Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
            Received& work);
@@ -104,6 +108,7 @@ class Receiver {
   const Mesh& mesh_;
   const RayTracer& tracer_;
   const std::vector<MaterialLobes>& materials_;
+  const SpecularSurfaces* panes_;  // null: none
   std::vector<Cell> stack_;
   std::vector<Delta> deltas_;
   std::vector<Ray> rays_;

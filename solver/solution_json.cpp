@@ -54,10 +54,14 @@ Enum ReadName(const GltfJson& fields, const char* name, const Enum (&values)[cou
 
 // One list for both directions, so that neither can forget an entry.
 constexpr std::pair<const char*, Ledger::Power Ledger::*> kLedgerEntries[] = {
-    {"emitted", &Ledger::emitted},     {"sent", &Ledger::sent},           {"delivered", &Ledger::delivered},
-    {"absorbed", &Ledger::absorbed},   {"reflected", &Ledger::reflected}, {"mirrored", &Ledger::mirrored},
-    {"truncated", &Ledger::truncated}, {"escaped", &Ledger::escaped},     {"blocked", &Ledger::blocked},
-    {"passedOn", &Ledger::passed_on},  {"unshot", &Ledger::unshot},       {"imbalance", &Ledger::imbalance}};
+    {"emitted", &Ledger::emitted},    {"sent", &Ledger::sent},           {"delivered", &Ledger::delivered},
+    {"absorbed", &Ledger::absorbed},  {"inGlass", &Ledger::in_glass},    {"reflected", &Ledger::reflected},
+    {"mirrored", &Ledger::mirrored},  {"truncated", &Ledger::truncated}, {"escaped", &Ledger::escaped},
+    {"blocked", &Ledger::blocked},    {"passedOn", &Ledger::passed_on},  {"unshot", &Ledger::unshot},
+    {"imbalance", &Ledger::imbalance}};
+
+// Absent from solutions without coloured glass.
+constexpr Ledger::Power Ledger::*kOptionalEntry = &Ledger::in_glass;
 
 json Settings(const SolveOptions& o) {
   json out = {{"maxEdge", JsonNumber(o.mesh.max_edge)},
@@ -135,6 +139,7 @@ json SolutionRecord(const Solution& solution) {
 
   for (const auto& [name, entry] : kLedgerEntries) {
     const Ledger::Power& power = solution.ledger.*entry;
+    if (entry == kOptionalEntry && power == Ledger::Power{}) continue;
     record["ledger"][name] = {Finite(power[0]), Finite(power[1]), Finite(power[2])};
   }
 
@@ -163,7 +168,8 @@ void ReadSolutionRecord(const GltfJson& record, Solution* solution) {
 
   const GltfJson ledger = record.Object("ledger");
   for (const auto& [name, entry] : kLedgerEntries) {
-    if (!ledger.Numbers(name, 3, (solution->ledger.*entry).data())) ledger.FailValue(name, "3 numbers");
+    if (!ledger.Numbers(name, 3, (solution->ledger.*entry).data()) && entry != kOptionalEntry)
+      ledger.FailValue(name, "3 numbers");
   }
 
   for (size_t i = 0; i < record.Count("history"); ++i) {

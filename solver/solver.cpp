@@ -57,7 +57,7 @@ Ledger::Power& operator+=(Ledger::Power& a, const Eigen::Array3d& b) {
 class ProgressiveSolver {
  public:
   ProgressiveSolver(Scene scene, const SolveOptions& options, const SolveControl& control)
-      : control_(control), start_(std::chrono::steady_clock::now()), tracer_(scene) {
+      : control_(control), start_(std::chrono::steady_clock::now()), tracer_(scene), specular_(scene) {
     s_.scene = std::move(scene);
     s_.options = options;
     by_links_ = options.transport != Transport::kShooting;
@@ -65,7 +65,10 @@ class ProgressiveSolver {
 
   /// Continues `state`, which has whole steps behind it.
   ProgressiveSolver(Solution state, const SolveControl& control)
-      : control_(control), start_(std::chrono::steady_clock::now()), tracer_(state.scene) {
+      : control_(control),
+        start_(std::chrono::steady_clock::now()),
+        tracer_(state.scene),
+        specular_(state.scene) {
     s_ = std::move(state);
     by_links_ = s_.options.transport != Transport::kShooting;
     seconds_before_ = s_.solve_seconds;
@@ -394,11 +397,11 @@ class ProgressiveSolver {
     return true;
   }
 
-  // Light of the emitters by way of mirrors: over one planar mirror by shadow rays to their images, all else
-  // by links.
+  // Light of the emitters by way of mirrors and glass: over one planar mirror by shadow rays to their images,
+  // all else by links.
   bool EmissionByMirrors() {
     const bool mirrors = std::any_of(materials_.begin(), materials_.end(),
-                                     [](const MaterialLobes& m) { return m.kind() == GlossKind::kMirror; });
+                                     [](const MaterialLobes& m) { return m.sends_on(); });
     phase_ = Phase::kMirrors;
     if (by_links_ && mirrors) {
       s_.direct = Straight();
@@ -534,7 +537,7 @@ class ProgressiveSolver {
 
   bool GatherShot(int step, const ShootingField& field, int samples, const std::vector<uint32_t>& nodes) {
     tbb::enumerable_thread_specific<Receiver> receivers(
-        [&] { return Receiver(s_.mesh, tracer_, materials_); });
+        [&] { return Receiver(s_.mesh, tracer_, materials_, &specular_); });
     return ForEach(nodes, step, [&](uint32_t n, float* out) {
       return receivers.local().Gather(n, field, samples, s_.received.empty() ? 0.0f : s_.received[n],
                                       Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out);
@@ -612,7 +615,10 @@ class ProgressiveSolver {
       const Eigen::Array3d flux(flux_[n].gained.cast<double>());
       ledger.delivered += r.delivered.cast<double>() * area;
       ledger.absorbed += r.absorbed.cast<double>() * area;
-      (by_links_ ? ledger.passed_on : ledger.mirrored) += r.mirrored.cast<double>() * area;
+      // Panes hinder no shadow ray.
+      const uint32_t material = s_.mesh.patches[s_.mesh.node_patch[n]].material;
+      const bool goes_on = by_links_ || specular_.kind(material) == SpecularSurfaces::Kind::kPane;
+      (goes_on ? ledger.passed_on : ledger.mirrored) += r.mirrored.cast<double>() * area;
       ledger.reflected += flux * area;
       ledger.truncated += ((r.reflected + r.through).cast<double>() - flux) * area;
       // By absolute values: lobes are signed, and power of opposite signs is not shot yet either.
@@ -649,27 +655,29 @@ class ProgressiveSolver {
   // The ledger's entries that follow from what has been shot in all, total - unshot.
   void Close() {
     Ledger& ledger = s_.ledger;
-    ledger.emitted = ledger.sent = ledger.escaped = ledger.blocked = ledger.unshot = {};
+    ledger.emitted = ledger.sent = ledger.escaped = ledger.blocked = ledger.in_glass = ledger.unshot = {};
     ledger.emitted += emitted_;
     if (s_.history.empty()) {
       ledger.unshot = ledger.emitted;
     } else {
       std::vector<const MaterialLobes*> mirrors;
       for (const auto& m : materials_) {
-        mirrors.push_back(by_links_ && m.kind() == GlossKind::kMirror ? &m : nullptr);
+        mirrors.push_back(by_links_ && m.sends_on() ? &m : nullptr);
       }
-      const EmissionLoss emission = FindEmissionLoss(s_.scene, s_.mesh, tracer_, mirrors, s_.options.seed);
+      const EmissionLoss emission =
+          FindEmissionLoss(s_.scene, s_.mesh, tracer_, mirrors, s_.options.seed, by_links_);
       const Losses reflected = FindLosses(s_.mesh, *links_, s_.total, s_.unshot, area_);
       ledger.sent += emitted_ + reflected.sent;
       ledger.escaped += emitted_ * emission.escaped + reflected.escaped;
       ledger.blocked += emitted_ * emission.blocked + reflected.blocked;
+      ledger.in_glass += emitted_ * emission.in_glass + reflected.in_glass;
       for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
         if (area_[n] > 0) ledger.unshot += s_.unshot.Flux(n).cast<double>() * area_[n];
       }
     }
     for (int c = 0; c < 3; ++c) {
-      ledger.imbalance[c] = ledger.delivered[c] -
-                            (ledger.sent[c] + ledger.passed_on[c] - ledger.escaped[c] - ledger.blocked[c]);
+      ledger.imbalance[c] = ledger.delivered[c] - (ledger.sent[c] + ledger.passed_on[c] - ledger.escaped[c] -
+                                                   ledger.blocked[c] - ledger.in_glass[c]);
     }
     if (s_.history.empty()) ledger.imbalance = {};
     s_.solve_seconds = Seconds();
@@ -690,6 +698,7 @@ class ProgressiveSolver {
   SolveControl control_;
   std::chrono::steady_clock::time_point start_;
   RayTracer tracer_;
+  SpecularSurfaces specular_;
   Solution s_;
   bool by_links_ = true;
   std::vector<Emitter> emitters_;

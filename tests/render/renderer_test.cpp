@@ -60,7 +60,7 @@ TEST(RendererTest, ADielectricMirrorShowsItsBaseToo) {
   const Vec3 eye(1, 1.5f, 1.001f), at(1, 0.1f, 1);
   TableCache cache;
   const MaterialLobes material(glazed, LobeOptions{}, cache);
-  const float expected = material.base.Albedo(1)[0] + material.MirrorAlbedo(1)[0];
+  const float expected = material.base.Albedo(1)[0] + material.SentOn(1)[0];
   EXPECT_NEAR(renderer.Radiance(RayTo(eye, at))[0], expected, 0.01f * expected);
 }
 

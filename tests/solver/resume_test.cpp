@@ -13,6 +13,7 @@
 
 #include "scene/input_error.h"
 #include "solver/solver.h"
+#include "tests/support/glass.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/scratch_folder.h"
 
@@ -49,6 +50,10 @@ Scene RoomOfEverything(bool mirror) {
     brass.roughness = 0;
     const uint32_t silver = b.AddMaterial("silver", brass);
     b.AddQuad({0.01f, 0.5f, 1.5f}, {0.01f, 2, 1.5f}, {0.01f, 2, 2.5f}, {0.01f, 0.5f, 2.5f}, silver);
+    MetallicRoughness bottle = test::ClearGlass(1.5f);
+    bottle.attenuation_color = Rgb(0.3f, 0.9f, 0.4f);
+    bottle.attenuation_distance = 0.2f;
+    b.AddSphere({0.7f, 1.6f, 2.3f}, 0.3f, b.AddMaterial("bottle", bottle), 6);
   }
   return b.Build();
 }
@@ -94,7 +99,7 @@ void ExpectSameBits(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.stop_reason, b.stop_reason);
   EXPECT_EQ(a.material_kinds, b.material_kinds);
   EXPECT_EQ(a.material_errors, b.material_errors);
-  static_assert(sizeof(Ledger) == 12 * sizeof(Ledger::Power));
+  static_assert(sizeof(Ledger) == 13 * sizeof(Ledger::Power));
   EXPECT_EQ(std::memcmp(&a.ledger, &b.ledger, sizeof(Ledger)), 0);
   ASSERT_EQ(a.history.size(), b.history.size());
   for (size_t i = 0; i < a.history.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -73,6 +74,19 @@ Scene EveryKindOfScene() {
   paper.diffuse_transmission = 0.37f;
   paper.diffuse_transmission_color = Rgb(0.9f, 0.65f, 0.31f);
   const uint32_t shade = b.AddMaterial("shade", paper, Rgb::Zero(), true);
+  MetallicRoughness bottle;
+  bottle.base_color = Rgb(0.1f, 0.7f, 1.0f / 3);
+  bottle.metallic = 0;
+  bottle.roughness = 0;
+  bottle.transmission = 0.83f;
+  bottle.thickness = 0.017f;
+  bottle.attenuation_color = Rgb(0.1f, 0.3f, 1.0f / 7);
+  bottle.attenuation_distance = 0.13f;
+  const uint32_t body = b.AddMaterial("bottle", bottle);
+  bottle.thickness = 0;
+  bottle.attenuation_color = Rgb::Constant(1);
+  bottle.attenuation_distance = std::numeric_limits<float>::infinity();
+  const uint32_t window = b.AddMaterial("window", bottle, Rgb::Zero(), true);
   b.AddBox({-1, 0, -1}, {1, 2, 1.1f}, wall, /*inward=*/true);
   b.AddSphere({0.1f, 0.5f, 0.2f}, 0.4f, glazed, 6);
   b.AddQuad({-0.5f, 1, -0.5f}, {0.5f, 1.1f, -0.5f}, {0.5f, 1.2f, 0.1f}, {-0.5f, 1.1f, 0.1f}, metal);
@@ -82,6 +96,8 @@ Scene EveryKindOfScene() {
   b.AddQuad({-0.2f, 1.9f, -0.2f}, {0.2f, 1.9f, -0.2f}, {0.2f, 1.9f, 0.2f}, {-0.2f, 1.9f, 0.2f}, lamp);
   b.AddTriangle({0.6f, 0.3f, -0.8f}, {0.8f, 0.3f, -0.6f}, {0.7f, 0.8f, -0.7f}, glow);
   b.AddTriangle({0.3f, 1.3f, 0.7f}, {0.8f, 1.3f, 0.7f}, {0.5f, 1.7f, 0.8f}, shade);
+  b.AddSphere({-0.5f, 1.6f, 0.6f}, 0.2f, body, 5);
+  b.AddQuad({0.4f, 0.1f, 0.9f}, {0.9f, 0.1f, 0.9f}, {0.9f, 0.7f, 0.9f}, {0.4f, 0.7f, 0.9f}, window);
   b.AddCamera("view0", {0.3f, 1.1f, 0.9f}, {-0.2f, 0.7f, -0.4f});
   b.AddCamera("view \"ä\"", {-0.7f, 0.3f, 0.8f}, {0.3f, 0.9f, -0.1f}, {0.1f, 1, 0.2f}, 1.234567f);
   Scene scene = b.Build();
@@ -270,6 +286,10 @@ TEST(SolutionFileTest, MaterialsOfEveryModelComeBackUnchanged) {
       EXPECT_EQ(x.has_specular, y.has_specular);
       EXPECT_EQ(x.diffuse_transmission, y.diffuse_transmission);
       EXPECT_TRUE(same(x.diffuse_transmission_color, y.diffuse_transmission_color));
+      EXPECT_EQ(x.transmission, y.transmission);
+      EXPECT_EQ(x.thickness, y.thickness);
+      EXPECT_TRUE(same(x.attenuation_color, y.attenuation_color));
+      EXPECT_EQ(x.attenuation_distance, y.attenuation_distance);
     }
   }
 }
