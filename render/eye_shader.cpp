@@ -25,6 +25,7 @@ struct EyeShader::Way {
   bool gathered = false;    // by a diffuse or glossy surface: lobes are read wherever the way ends
   float direction_pdf = 0;  // with which the gathering surface found this direction; 0: lamps not aimed at
   float travelled = 0;      // since then, through panes
+  const PathScene::LampChoice* lamps = nullptr;  // of that surface
   MediaStack media;
 };
 
@@ -120,9 +121,10 @@ void EyeShader::Surface(const Ray& ray, const RayHit& hit, const Way& way, Task&
   const Vec3 wo = -ray.direction;
   float* basis = task.work.basis.data();
   if (surface.emits) {
-    const float weight = way.direction_pdf > 0
-                             ? PowerWeight(way.direction_pdf, paths_.LightPdf(hit.face, wo, way.travelled))
-                             : 1;
+    const float weight =
+        way.direction_pdf > 0
+            ? PowerWeight(way.direction_pdf, paths_.LightPdf(hit.face, wo, way.travelled, way.lamps))
+            : 1;
     *way.direct += way.throughput * (weight * surface.emission);
   }
 
@@ -172,13 +174,15 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
   next.throughput /= float(samples);
   next.gathered = true;
   next.travelled = 0;
+  const PathScene::LampChoice lamps = paths_.ChooseLamps(vertex, sampler);
+  next.lamps = &lamps;
   for (int j = 0; j < samples; ++j) {
     const uint32_t index = task.sample * uint32_t(samples) + uint32_t(j);
     const auto choice = choices.BitsAt(index);
     if (paths_.has_lamps()) {
       const auto place = places.At(index);
       const PathScene::LampSample lamp =
-          paths_.SampleLamp(vertex, sampler, uint64_t(choice[0]) << 32, place[0], place[1]);
+          paths_.SampleLamp(vertex, sampler, uint64_t(choice[0]) << 32, place[0], place[1], &lamps);
       if (lamp.light_pdf > 0) {
         ++task.work.rays;
         *way.direct += next.throughput * lamp.value * paths_.Visible(lamp.shadow, way.media.top()) *
@@ -205,7 +209,7 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
       const float distance = (last.origin - scattered.ray.origin).norm() + hit.t;
       passed *= paths_.specular().Transmittance(way.media.top(), distance);
       const float weight =
-          PowerWeight(scattered.pdf, paths_.LightPdf(hit.face, -scattered.ray.direction, distance));
+          PowerWeight(scattered.pdf, paths_.LightPdf(hit.face, -scattered.ray.direction, distance, &lamps));
       *way.direct +=
           next.throughput * scattered.weight * passed * (weight * paths_.surface(hit.face).emission);
     }

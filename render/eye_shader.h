@@ -5,7 +5,7 @@
 
 #include "render/path_scene.h"
 #include "render/renderer.h"
-#include "render/stored_light.h"
+#include "render/stored_radiance.h"
 #include "solver/hash.h"
 
 namespace lobe {
@@ -60,7 +60,7 @@ class EyeShader {
   Reading ReadingOf(uint32_t material, const RenderOptions& options) const;
 
   const PathScene& paths() const { return paths_; }
-  const StoredLight& stored() const { return stored_; }
+  const StoredRadiance& stored() const { return stored_; }
 
  private:
   struct Way;
@@ -74,7 +74,7 @@ class EyeShader {
 
   const Solution& solution_;
   PathScene paths_;
-  StoredLight stored_;
+  StoredRadiance stored_;
   std::vector<ReflectanceSampler> gloss_;  // by material
 };
 

@@ -1,10 +1,10 @@
-#include "render/stored_light.h"
+#include "render/stored_radiance.h"
 
 #include "brdf/frame.h"
 
 namespace lobe {
 
-Rgb StoredLight::Read(const NodeLobes& lobes, LobePart part, const Mesh::Location& where, const Vec3& wo,
+Rgb StoredRadiance::Read(const NodeLobes& lobes, LobePart part, const Mesh::Location& where, const Vec3& wo,
                       float* basis) const {
   if (where.element == kNone) return Rgb::Zero();
   const Mesh& mesh = solution_.mesh;
