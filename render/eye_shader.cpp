@@ -25,7 +25,7 @@ struct EyeShader::Way {
   bool gathered = false;    // by a diffuse or glossy surface: lobes are read wherever the way ends
   float direction_pdf = 0;  // with which the gathering surface found this direction; 0: lamps not aimed at
   float travelled = 0;      // since then, through panes
-  const PathScene::LampChoice* lamps = nullptr;  // of that surface
+  const Lamps::Choice* lamps = nullptr;  // of that surface
   MediaStack media;
 };
 
@@ -174,7 +174,7 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
   next.throughput /= float(samples);
   next.gathered = true;
   next.travelled = 0;
-  const PathScene::LampChoice lamps = paths_.ChooseLamps(vertex, sampler);
+  const Lamps::Choice lamps = paths_.ChooseLamps(vertex, sampler);
   next.lamps = &lamps;
   for (int j = 0; j < samples; ++j) {
     const uint32_t index = task.sample * uint32_t(samples) + uint32_t(j);

@@ -48,8 +48,7 @@ PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
     }
   }
 
-  std::vector<double> power;
-  double total = 0;
+  std::vector<Lamps::Face> lamps;
   faces_.reserve(scene.faces.size());
   for (uint32_t f = 0; f < scene.faces.size(); ++f) {
     const Face& face = scene.faces[f];
@@ -76,20 +75,19 @@ PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
       shade.emits[0] = front_met[f];
       shade.emits[1] = back_met[f] && surface.double_sided;
       if (const int sides = shade.emits[0] + shade.emits[1]; sides > 0) {
-        shade.lamp = uint32_t(lamps_.size());
-        lamps_.push_back({f, area, 0, 0});
-        power.push_back(double(surface.emission.mean()) * area * sides);
-        total += power.back();
+        shade.lamp = uint32_t(lamps.size());
+        lamps.push_back({f,
+                         p,
+                         shade.normal,
+                         {shade.emits[0], shade.emits[1]},
+                         area,
+                         double(surface.emission.mean()) * area * sides,
+                         face.surface});
       }
     }
     faces_.push_back(shade);
   }
-  if (lamps_.empty()) return;
-  choose_lamp_ = AliasTable(power);
-  for (size_t i = 0; i < lamps_.size(); ++i) {
-    lamps_[i].power = float(power[i] / total);
-    lamps_[i].per_area = float(power[i] / total / lamps_[i].area);
-  }
+  lamps_ = Lamps(std::move(lamps));
 }
 
 Vec3 PathScene::ShadingNormal(const RayHit& hit) const {
@@ -116,69 +114,12 @@ PathScene::Vertex PathScene::VertexAt(const RayHit& hit, const Vec3& wo) const {
   return {position, normal, frame, frame.ToLocal(wo)};
 }
 
-PathScene::LampChoice PathScene::ChooseLamps(const Vertex& vertex, const ReflectanceSampler& sampler) const {
-  LampChoice choice;
-  if (lamps_.size() < 2 || lamps_.size() > LampChoice::kMost) return choice;
-  // By the brightest of centre and corners; a part of the chance by power, since lobes may be narrower than
-  // lamps. A lamp below the horizon, or that looks away, brings nothing: its corners tell that for sure.
-  constexpr float kByPower = 0.1f;
-  float sum = 0;
-  std::array<float, LampChoice::kMost> expected;
-  for (size_t i = 0; i < lamps_.size(); ++i) {
-    const FaceShade& lamp = faces_[lamps_[i].face];
-    float most = 0;
-    bool seen = false;
-    for (int k = 0; k < 4; ++k) {
-      const Vec3 target = lamp.corner + (k == 0   ? Vec3((lamp.edge1 + lamp.edge2) / 3)
-                                         : k == 1 ? lamp.edge1
-                                         : k == 2 ? lamp.edge2
-                                                  : Vec3(Vec3::Zero()));
-      const Vec3 way = target - vertex.position;
-      const float distance2 = way.squaredNorm(), towards = -lamp.normal.dot(way);
-      if (!(distance2 > 0) || !lamp.emits[towards < 0]) continue;
-      const Vec3 wi_local = vertex.frame.ToLocal(way / std::sqrt(distance2));
-      if (!(wi_local.z() > 0) && !sampler.transmits()) continue;
-      seen = true;
-      const ReflectanceValue value = sampler.Evaluate(vertex.wo_local, wi_local);
-      // Nearer than its own size a lamp does not get brighter.
-      most = std::max(most, value.f.mean() * std::abs(wi_local.z() * towards) /
-                                (std::sqrt(distance2) * std::max(distance2, lamps_[i].area)));
-    }
-    expected[i] = seen ? lamps_[i].power * most : -1;
-    if (seen) sum += expected[i];
-  }
-  choice.count = uint32_t(lamps_.size());
-  float up_to = 0;
-  for (size_t i = 0; i < lamps_.size(); ++i) {
-    float chance = 0;
-    if (expected[i] >= 0) {
-      chance = kByPower * lamps_[i].power + (sum > 0 ? (1 - kByPower) * expected[i] / sum : 0.0f);
-    }
-    choice.up_to[i] = up_to += chance;
-    choice.per_area[i] = chance / lamps_[i].area;
-  }
-  if (up_to > 0) {
-    for (size_t i = 0; i < lamps_.size(); ++i) choice.per_area[i] /= up_to;
-  }
-  return choice;
-}
-
 PathScene::LampSample PathScene::SampleLamp(const Vertex& vertex, const ReflectanceSampler& sampler,
-                                            uint64_t bits, float u, float v, const LampChoice* choice) const {
+                                            uint64_t bits, float u, float v,
+                                            const Lamps::Choice* choice) const {
   LampSample out;
-  uint32_t chosen;
-  float per_area;
-  if (choice && choice->count > 0) {
-    const float w = float(bits >> 40) * 0x1p-24f * choice->up_to[choice->count - 1];
-    chosen = uint32_t(std::upper_bound(choice->up_to.begin(), choice->up_to.begin() + choice->count - 1, w) -
-                      choice->up_to.begin());
-    per_area = choice->per_area[chosen];
-    if (!(per_area > 0)) return out;
-  } else {
-    chosen = choose_lamp_.Draw(bits);
-    per_area = lamps_[chosen].per_area;
-  }
-  const FaceShade& lamp = faces_[lamps_[chosen].face];
+  const uint32_t chosen = lamps_.Draw(bits, choice);
+  const FaceShade& lamp = faces_[lamps_.face(chosen)];
   FoldSquare(&u, &v);
   const Vec3 target = lamp.corner + u * lamp.edge1 + v * lamp.edge2;
   const Vec3 way = target - vertex.position;
@@ -195,7 +136,7 @@ PathScene::LampSample PathScene::SampleLamp(const Vertex& vertex, const Reflecta
   const Vec3 from = vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above);
   const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
   out.shadow = {from, 0, to - from, 1};  // Visible takes its length for the way
-  out.light_pdf = per_area * distance2 * distance / std::abs(towards);
+  out.light_pdf = lamps_.PerArea(chosen, choice) * distance2 * distance / std::abs(towards);
   out.direction_pdf = value.pdf;
   out.value = value.f * surfaces_[lamp.material].emission * (std::abs(wi_local.z()) / out.light_pdf);
   return out;

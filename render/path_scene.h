@@ -5,7 +5,7 @@
 
 #include "brdf/frame.h"
 #include "brdf/sampling.h"
-#include "render/alias_table.h"
+#include "render/lamps.h"
 #include "scene/ray_tracer.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
@@ -55,15 +55,6 @@ class PathScene {
     Ray ray;
   };
 
-  /// Which lamps to aim at from one vertex: in proportion to about what each would bring if it were free.
-  /// Scenes with more than kMost emitting faces keep to their power.
-  struct LampChoice {
-    static constexpr size_t kMost = 32;
-    uint32_t count = 0;                 ///< 0: by power
-    std::array<float, kMost> up_to;     ///< sums of chances
-    std::array<float, kMost> per_area;  ///< chance over area
-  };
-
   const RayTracer& tracer() const { return tracer_; }
   const SpecularSurfaces& specular() const { return specular_; }
   const Surface& surface(uint32_t face) const { return surfaces_[faces_[face].material]; }
@@ -76,23 +67,23 @@ class PathScene {
   }
   /// Per steradian seen from `distance` away along unit `wo`, with which shadow rays end on this face; 0
   /// if it is no lamp. `choice`: that of the vertex they start from; null: by power.
-  float LightPdf(uint32_t face, const Vec3& wo, float distance, const LampChoice* choice = nullptr) const {
+  float LightPdf(uint32_t face, const Vec3& wo, float distance, const Lamps::Choice* choice = nullptr) const {
     const FaceShade& f = faces_[face];
     if (f.lamp == kNone) return 0;
-    const float per_area = choice && choice->count > 0 ? choice->per_area[f.lamp] : lamps_[f.lamp].per_area;
-    return per_area * distance * distance / std::abs(f.normal.dot(wo));
+    return lamps_.PerArea(f.lamp, choice) * distance * distance / std::abs(f.normal.dot(wo));
   }
   /// About `wo`, unit, pointing back along the ray.
   Vertex VertexAt(const RayHit& hit, const Vec3& wo) const;
   Vec3 FaceNormal(uint32_t face) const { return faces_[face].normal; }
   Vec3 ShadingNormal(const RayHit& hit) const;  ///< on the side that was hit
 
-  /// Costs about as much as tracing a ray to every tenth of the lamps.
-  LampChoice ChooseLamps(const Vertex& vertex, const ReflectanceSampler& sampler) const;
-  /// Aims at a lamp drawn by `choice`, or by power (`bits`: all 64 uniform), and a point drawn evenly from it
-  /// (u, v in [0, 1)).
+  Lamps::Choice ChooseLamps(const Vertex& vertex, const ReflectanceSampler& sampler) const {
+    return lamps_.ChooseFrom(vertex.position, vertex.frame, vertex.wo_local, sampler);
+  }
+  /// Aims at a lamp drawn by `bits` (all 64 uniform) and `choice`, or by power, and a point drawn evenly from
+  /// it (u, v in [0, 1)).
   LampSample SampleLamp(const Vertex& vertex, const ReflectanceSampler& sampler, uint64_t bits, float u,
-                        float v, const LampChoice* choice = nullptr) const;
+                        float v, const Lamps::Choice* choice = nullptr) const;
   /// What comes along a shadow ray through `medium` (a material, or kNone: air): nothing if it is blocked,
   /// else what the medium and panes on the way let through.
   Rgb Visible(const Ray& shadow, uint32_t medium) const {
@@ -118,19 +109,12 @@ class PathScene {
     bool emits[2] = {false, false};  // by side, if rays can meet that side
   };
 
-  struct Lamp {
-    uint32_t face;
-    float area, power;
-    float per_area;  // chance by power over area
-  };
-
   RayTracer tracer_;
   SpecularSurfaces specular_;
   std::vector<Surface> surfaces_;  // by material
   std::vector<FaceShade> faces_;
   std::vector<std::array<Vec3, 3>> corner_normals_;  // of smooth faces
-  std::vector<Lamp> lamps_;
-  AliasTable choose_lamp_;
+  Lamps lamps_;
 };
 
 /// Power heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques", SIGGRAPH 1995): weight of a
