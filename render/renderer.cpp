@@ -17,6 +17,10 @@ std::string RenderOptions::Validate() const {
   std::ostringstream out;
   if (width < 1 || height < 1 || width > 65536 || height > 65536) {
     out << "size " << width << "x" << height << " is out of range: 1 to 65536 pixels a side is expected";
+  } else if (crop != PixelRect{} && (crop.x0 < 0 || crop.y0 < 0 || crop.width() < 1 || crop.height() < 1 ||
+                                     crop.x1 > width || crop.y1 > height)) {
+    out << "crop " << crop.x0 << "," << crop.y0 << "," << crop.x1 << "," << crop.y1
+        << " is out of range: pixels within 0,0," << width << "," << height << " are expected";
   } else if (samples_per_pixel < 1 || samples_per_pixel > 65536) {
     out << "samples per pixel " << samples_per_pixel << " is out of range: 1 to 65536 is expected";
   } else if (max_mirror_depth < 0 || max_mirror_depth > 1000) {
@@ -31,7 +35,7 @@ struct Renderer::Impl {
 
   struct Sums {  // what a picture lost
     double clamped = 0, cut_off = 0, shown = 0;
-    uint64_t rays = 0;
+    uint64_t rays = 0, pixels = 0;
   };
 
   explicit Impl(const Solution& s) : solution(s), tracer(s.scene) {}
@@ -87,6 +91,8 @@ struct Renderer::Impl {
 Renderer::Renderer(const Solution& solution) : impl_(std::make_unique<Impl>(solution)) {}
 Renderer::~Renderer() = default;
 
+const RayTracer& Renderer::tracer() const { return impl_->tracer; }
+
 Rgb Renderer::Radiance(const Ray& ray) const {
   std::vector<float> basis(kMaxBasisSize);
   Impl::Sums sums;
@@ -99,7 +105,8 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
   const auto start = std::chrono::steady_clock::now();
   const EyeRays eye_rays(view, options);
   const int samples = eye_rays.per_pixel();
-  Image image(options.width, options.height);
+  const PixelRect window = options.Window();
+  Image image(window.width(), window.height());
 
   struct Scratch {
     std::vector<Ray> rays;
@@ -107,7 +114,7 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
     std::vector<float> basis = std::vector<float>(kMaxBasisSize);
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  std::vector<Impl::Sums> sums(TileCount(options.width, options.height));
+  std::vector<Impl::Sums> sums(TileCount(options));
 
   const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
@@ -127,25 +134,28 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
           pixel += impl_->Shade(scratch.rays[ray], scratch.hits[ray], options.max_mirror_depth,
                                 scratch.basis.data(), sum);
         }
-        image.at(x, y) = pixel / float(samples);
         sum.shown += pixel.sum();
+        ++sum.pixels;
+        if (window.Contains(x, y)) image.at(x - window.x0, y - window.y0) = pixel / float(samples);
       }
     }
   };
-  const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
+  const bool complete = ForEachTile(options, render_tile, progress);
 
   if (report) {
     *report = {};
     double clamped = 0, shown = 0, cut = 0;
+    uint64_t pixels = 0;
     for (const auto& s : sums) {
       clamped += s.clamped;
       shown += s.shown;
       cut += s.cut_off;
+      pixels += s.pixels;
       report->rays += s.rays;
     }
     report->clamped = shown > 0 ? clamped / shown : 0;
     // Light behind the last mirror is taken to be as bright as the picture.
-    report->cut_off = cut / (3.0 * double(samples) * options.width * options.height);
+    report->cut_off = pixels > 0 ? cut / (3.0 * double(samples) * double(pixels)) : 0;
     report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
