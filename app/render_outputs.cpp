@@ -104,8 +104,7 @@ void RenderOutputs::AddTo(CLI::App* command) {
                    "Of PNG pictures: srgb (cut at 1), reinhard (white at 4) or filmic (Hable, white at 5.6)")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_flag("--half", half_,
-                    "Colours of OpenEXR pictures as 16-bit half, at most 65504; N, P and Z stay float");
+  command->add_flag("--half", half_, "Colours of OpenEXR pictures as 16-bit half, at most 65504 [float]");
 }
 
 void RenderOutputs::Validate(const RenderViews& views) const {
