@@ -50,13 +50,22 @@ void ViewFlags::Validate() {
 
 Camera ViewFlags::ChooseCamera(const Scene& scene) const {
   if (own_camera_) return *own_camera_;
-  if (!camera_ && scene.cameras.empty()) {
+  if (!camera_) return EveryCamera(scene).front();
+  Camera camera = scene.FindCamera(*camera_);
+  if (fov_degrees_) camera.fov_y = Radians(*fov_degrees_);
+  return camera;
+}
+
+std::vector<Camera> ViewFlags::EveryCamera(const Scene& scene) const {
+  if (scene.cameras.empty()) {
     throw InputError(scene.path +
                      ": has no camera; --eye and --target are expected to say where to look from");
   }
-  Camera camera = camera_ ? scene.FindCamera(*camera_) : scene.cameras.front();
-  if (fov_degrees_) camera.fov_y = Radians(*fov_degrees_);
-  return camera;
+  std::vector<Camera> cameras = scene.cameras;
+  for (Camera& camera : cameras) {
+    if (fov_degrees_) camera.fov_y = Radians(*fov_degrees_);
+  }
+  return cameras;
 }
 
 }  // namespace lobe

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -20,8 +21,14 @@ class ViewFlags {
   /// Any of them given?
   bool given() const { return camera_ || eye_ || target_ || up_ || fov_degrees_ || size_; }
 
+  /// Do they say where to look from, by name or by numbers?
+  bool one_camera_given() const { return camera_ || eye_ || target_ || up_; }
+  bool fov_given() const { return fov_degrees_.has_value(); }
+
   /// Throws InputError if the scene has no camera, or none of that name.
   Camera ChooseCamera(const Scene& scene) const;
+  /// All cameras of the file, with --fov if that is given. Throws InputError if there are none.
+  std::vector<Camera> EveryCamera(const Scene& scene) const;
   PictureSize ChooseSize(const Camera& camera) const { return picture_size_.value_or(DefaultSize(camera)); }
 
  private:

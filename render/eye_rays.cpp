@@ -64,20 +64,32 @@ void EyeRays::Append(int x, int y, std::vector<Ray>* rays) const {
   }
 }
 
-int TileCount(int width, int height) {
-  return ((width + kTile - 1) / kTile) * ((height + kTile - 1) / kTile);
+namespace {
+
+/// The window in tiles of the full picture.
+PixelRect TilesOf(const PixelRect& window) {
+  return {window.x0 / kTile, window.y0 / kTile, (window.x1 + kTile - 1) / kTile,
+          (window.y1 + kTile - 1) / kTile};
 }
 
-bool ForEachTile(int width, int height, const std::function<void(const Tile&)>& render,
+}  // namespace
+
+int TileCount(const RenderOptions& options) {
+  const PixelRect grid = TilesOf(options.Window());
+  return grid.width() * grid.height();
+}
+
+bool ForEachTile(const RenderOptions& options, const std::function<void(const Tile&)>& render,
                  const std::function<bool(double)>& progress) {
-  const int tiles_x = (width + kTile - 1) / kTile, tiles = TileCount(width, height);
+  const PixelRect grid = TilesOf(options.Window());
+  const int tiles = grid.width() * grid.height();
   std::atomic<int> done{0};
   std::atomic<bool> stop{false};
   std::mutex progress_mutex;
   tbb::parallel_for(0, tiles, [&](int index) {
     if (stop.load(std::memory_order_relaxed)) return;
-    const int x0 = index % tiles_x * kTile, y0 = index / tiles_x * kTile;
-    render({index, x0, y0, std::min(x0 + kTile, width), std::min(y0 + kTile, height)});
+    const int x0 = (grid.x0 + index % grid.width()) * kTile, y0 = (grid.y0 + index / grid.width()) * kTile;
+    render({index, x0, y0, std::min(x0 + kTile, options.width), std::min(y0 + kTile, options.height)});
     const int finished = ++done;
     if (progress) {
       const std::unique_lock lock(progress_mutex, std::try_to_lock);

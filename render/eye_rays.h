@@ -27,15 +27,17 @@ class EyeRays {
   std::vector<float> inverse_;  // of the cumulative filter, one axis; empty for the box
 };
 
-/// A square of pixels whose eye rays go together, [x0, x1) x [y0, y1).
+/// A square of pixels of the full picture whose eye rays go together, [x0, x1) x [y0, y1). With a crop the
+/// tiles are those of the full picture that meet it, whole: rays that are traced together then stay together,
+/// and so do their bits; pixels outside options.Window() are to be dropped.
 struct Tile {
-  int index, x0, y0, x1, y1;
+  int index, x0, y0, x1, y1;  // index: 0 to TileCount - 1
 };
-int TileCount(int width, int height);
+int TileCount(const RenderOptions& options);
 
 /// Calls `render` for every tile, in parallel and in no order. `progress` gets 0..1 from one thread at a
 /// time; if it returns false no further tiles begin. True if all were rendered.
-bool ForEachTile(int width, int height, const std::function<void(const Tile&)>& render,
+bool ForEachTile(const RenderOptions& options, const std::function<void(const Tile&)>& render,
                  const std::function<bool(double)>& progress);
 
 }  // namespace lobe

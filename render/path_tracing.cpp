@@ -13,20 +13,22 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
   const auto start = std::chrono::steady_clock::now();
   const EyeRays eye_rays(view, options);
   const int samples = eye_rays.per_pixel();
-  Image image(options.width, options.height);
+  const PixelRect window = options.Window();
+  Image image(window.width(), window.height());
 
   struct Scratch {
     std::vector<Ray> rays;
     std::vector<RayHit> hits;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  std::vector<uint64_t> traced(TileCount(options.width, options.height), 0);
+  std::vector<uint64_t> traced(TileCount(options), 0);
 
   const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
     uint64_t rays = 0;
     for (int y = tile.y0; y < tile.y1; ++y) {
       for (int x = tile.x0; x < tile.x1; ++x) {
+        if (!window.Contains(x, y)) continue;  // a pixel's paths depend on nothing beside it
         scratch.rays.clear();
         eye_rays.Append(x, y, &scratch.rays);
         scratch.hits.resize(scratch.rays.size());
@@ -38,12 +40,12 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
           sum +=
               paths.RadianceFrom(scratch.hits[s], -scratch.rays[s].direction, random, &rays).cast<double>();
         }
-        image.at(x, y) = (sum / samples).cast<float>();
+        image.at(x - window.x0, y - window.y0) = (sum / samples).cast<float>();
       }
     }
     traced[tile.index] = rays;
   };
-  const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
+  const bool complete = ForEachTile(options, render_tile, progress);
 
   if (report) {
     *report = {};

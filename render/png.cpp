@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -66,6 +67,10 @@ void WritePng(const Image& image, float exposure, const std::string& path, ToneC
 }
 
 Mask ReadPngMask(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(path + ": is a directory; a PNG mask is expected");
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be opened; a PNG mask is expected");
   const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

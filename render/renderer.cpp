@@ -14,6 +14,10 @@ std::string RenderOptions::Validate() const {
   std::ostringstream out;
   if (width < 1 || height < 1 || width > 65536 || height > 65536) {
     out << "size " << width << "x" << height << " is out of range: 1 to 65536 pixels a side is expected";
+  } else if (crop != PixelRect{} && (crop.x0 < 0 || crop.y0 < 0 || crop.width() < 1 || crop.height() < 1 ||
+                                     crop.x1 > width || crop.y1 > height)) {
+    out << "crop " << crop.x0 << "," << crop.y0 << "," << crop.x1 << "," << crop.y1
+        << " is out of range: pixels within 0,0," << width << "," << height << " are expected";
   } else if (samples_per_pixel < 1 || samples_per_pixel > 65536) {
     out << "samples per pixel " << samples_per_pixel << " is out of range: 1 to 65536 is expected";
   } else if (max_mirror_depth < 0 || max_mirror_depth > 1000) {
@@ -76,6 +80,8 @@ struct Renderer::Impl {
 Renderer::Renderer(const Solution& solution) : impl_(std::make_unique<Impl>(solution)) {}
 Renderer::~Renderer() = default;
 
+const RayTracer& Renderer::tracer() const { return impl_->shader.paths().tracer(); }
+
 Rgb Renderer::Radiance(const Ray& ray) const {
   EyeShader::Work work;
   RenderOptions options;
@@ -94,7 +100,8 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
   const auto start = std::chrono::steady_clock::now();
   const EyeRays eye_rays(view, options);
   const int samples = eye_rays.per_pixel();
-  LayeredImage image(options.width, options.height, wanted);
+  const PixelRect window = options.Window();
+  LayeredImage image(window.width(), window.height(), wanted);
 
   struct Scratch {
     std::vector<Ray> rays;
@@ -104,9 +111,9 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
   tbb::enumerable_thread_specific<Scratch> scratches;
   struct Sums {  // of a tile
     double clamped = 0, cut_off = 0, shown = 0;
-    uint64_t rays = 0;
+    uint64_t rays = 0, pixels = 0;
   };
-  std::vector<Sums> sums(TileCount(options.width, options.height));
+  std::vector<Sums> sums(TileCount(options));
   const bool split = wanted.Has(Layer::kDirect) || wanted.Has(Layer::kIndirect);
 
   const auto render_tile = [&](const Tile& tile) {
@@ -130,13 +137,17 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
                                        {key, uint32_t(s)}, split, scratch.work);
         }
         const Rgb colour = pixel.Sum();
-        image.color.at(x, y) = colour / float(samples);
         sum.shown += colour.sum();
         sum.clamped += pixel.clamped.sum();
-        if (!wanted.empty()) {
-          const std::span rays(scratch.rays.data() + ray, samples);
-          const std::span hits(scratch.hits.data() + ray, samples);
-          impl_->PutLayers(view, rays, hits, pixel, x, y, &image);
+        ++sum.pixels;
+        if (window.Contains(x, y)) {
+          const int column = x - window.x0, row = y - window.y0;
+          image.color.at(column, row) = colour / float(samples);
+          if (!wanted.empty()) {
+            const std::span rays(scratch.rays.data() + ray, samples);
+            const std::span hits(scratch.hits.data() + ray, samples);
+            impl_->PutLayers(view, rays, hits, pixel, column, row, &image);
+          }
         }
         ray += samples;
       }
@@ -144,20 +155,22 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
     sum.rays = scratch.rays.size() + scratch.work.rays;
     sum.cut_off = scratch.work.cut_off;
   };
-  const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
+  const bool complete = ForEachTile(options, render_tile, progress);
 
   if (report) {
     *report = {};
     double clamped = 0, shown = 0, cut = 0;
+    uint64_t pixels = 0;
     for (const auto& s : sums) {
       clamped += s.clamped;
       shown += s.shown;
       cut += s.cut_off;
+      pixels += s.pixels;
       report->rays += s.rays;
     }
     report->clamped = shown > 0 ? clamped / shown : 0;
     // Light behind the last mirror is taken to be as bright as the picture.
-    report->cut_off = cut / (3.0 * double(samples) * options.width * options.height);
+    report->cut_off = pixels > 0 ? cut / (3.0 * double(samples) * double(pixels)) : 0;
     report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -25,6 +25,9 @@ enum class RenderMode {
 
 struct RenderOptions {
   int width = 512, height = 512;
+  /// The part of the picture to render, in its pixels; empty (the default): all of it. The image has the
+  /// part's size, and its pixels are those of the full picture bit for bit.
+  PixelRect crop = {};
   /// Eye rays per pixel, stratified; rounded up to a square.
   int samples_per_pixel = 16;
   PixelFilter filter = PixelFilter::kBox;
@@ -36,6 +39,8 @@ struct RenderOptions {
   uint64_t seed = 1;
   /// A sentence saying what is out of range, or an empty string.
   std::string Validate() const;
+  /// `crop`, or all of the picture.
+  PixelRect Window() const { return crop == PixelRect{} ? PixelRect{0, 0, width, height} : crop; }
 };
 
 struct RenderReport {
@@ -66,6 +71,9 @@ class Renderer {
 
   /// Radiance arriving at the ray's origin along it, after at most the default number of mirrors.
   Rgb Radiance(const Ray& ray) const;
+
+  /// Of the solution's scene.
+  const RayTracer& tracer() const;
 
  private:
   struct Impl;

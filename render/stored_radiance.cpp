@@ -5,7 +5,7 @@
 namespace lobe {
 
 Rgb StoredRadiance::Read(const NodeLobes& lobes, LobePart part, const Mesh::Location& where, const Vec3& wo,
-                      float* basis) const {
+                         float* basis) const {
   if (where.element == kNone) return Rgb::Zero();
   const Mesh& mesh = solution_.mesh;
   const NodeWeights w = Interpolate(mesh, solution_.hidden, where);

@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/slow_flip.h"
 
 namespace lobe {
 namespace {
@@ -67,6 +70,31 @@ TEST(FlipTest, AnEdgeThatTheOtherPictureLacksShowsMore) {
   EXPECT_NEAR(map[row + 3], 0, 1e-4);
   EXPECT_NEAR(map[row + 13], 0.18340, 1e-4);
   EXPECT_NEAR(map[row + 8], std::pow(0.18340, 0.81197), 1e-3);
+}
+
+// Two routes: separated kernels in float, and the paper's square ones in double, on a picture of everything.
+TEST(FlipTest, AgreesWithThePapersSquareKernels) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  Image a(40, 30), b(40, 30);
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      // Left: smooth colours against others; right: coarse noise against the same but darker.
+      a.at(x, y) =
+          x < 20 ? Rgb(x / 20.0f, y / 30.0f, 0.5f) : Rgb(uniform(random), uniform(random), uniform(random));
+      b.at(x, y) = x < 20 ? Rgb(y / 30.0f, 0.3f, x / 20.0f) : Rgb(0.7f * a.at(x, y));
+    }
+  }
+  for (const double ppd : {12.0, kFlipPixelsPerDegree}) {
+    const test::SlowFlip slow(ppd);
+    const auto map = FlipMap(a, b, ppd);
+    for (const auto& [x, y] :
+         {std::pair(0, 0), {39, 29}, {5, 17}, {19, 11}, {20, 12}, {31, 3}, {27, 22}, {12, 29}}) {
+      const double expected = slow.At(a, b, x, y);
+      EXPECT_GT(expected, 0.02) << x << "," << y;
+      EXPECT_NEAR(map[y * 40 + x], expected, 2e-4) << x << "," << y << " at " << ppd;
+    }
+  }
 }
 
 TEST(FlipTest, IsSymmetric) {

@@ -91,6 +91,32 @@ TEST(PngTest, UnwritablePathIsOneSentenceAndLeavesNothing) {
   EXPECT_TRUE(folder.Entries().empty());
 }
 
+TEST(PngTest, TheToneCurveComesAfterExposureAndBeforeSrgb) {
+  const ScratchFolder folder;
+  Image image(1, 1);
+  image.at(0, 0) = Rgb(0.25f, 1, 50);
+  WritePng(image, 1, folder.File("a.png"), ToneCurve::kFilmic);
+  int width = 0, height = 0;
+  const auto rgb = ReadRgb(folder.File("a.png"), &width, &height);
+  for (int c = 0; c < 2; ++c) {
+    EXPECT_EQ(rgb[c], ToSrgb8(ToneMap(ToneCurve::kFilmic, 2 * image.at(0, 0)[c]))) << c;
+    EXPECT_NE(rgb[c], ToSrgb8(image.at(0, 0)[c], 1)) << c;
+  }
+  EXPECT_EQ(rgb[2], 255);
+}
+
+TEST(PngMaskTest, MasksComeBackAndDirectoriesAreRefused) {
+  const ScratchFolder folder;
+  Mask mask{5, 3, std::vector<bool>(15, false)};
+  mask.set[0] = mask.set[7] = mask.set[14] = true;
+  WritePngMask(mask, folder.File("m.png"));
+  const Mask read = ReadPngMask(folder.File("m.png"));
+  EXPECT_EQ(read.width, 5);
+  EXPECT_EQ(read.height, 3);
+  EXPECT_EQ(read.set, mask.set);
+  EXPECT_THAT(ErrorOf(folder.path()), HasSubstr("directory"));
+}
+
 TEST(PngMaskTest, ReadsEveryKindOfPng) {
   const ScratchFolder folder;
   const std::string path = folder.File("m.png");
