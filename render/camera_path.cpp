@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -206,8 +205,15 @@ CameraPath ReadCameraPath(const std::string& path) {
     throw InputError(path + ": is a directory; a camera path is expected");
   }
   std::ifstream file(path, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file && text.empty()) throw InputError(path + ": cannot be read; a camera path is expected");
+  constexpr size_t kLargest = size_t(1) << 24;  // 100,000 keys; what never ends is refused too
+  std::string text(kLargest + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  if (text.size() > kLargest) {
+    throw InputError(path + ": has more than 16 MB; a camera path has less");
+  }
+  if (file.bad() || (text.empty() && !file.is_open()))
+    throw InputError(path + ": cannot be read; a camera path is expected");
   Json json;
   try {
     json = Json::parse(text);

@@ -10,6 +10,8 @@
 #include "render/exr.h"
 #include "render/png.h"
 #include "tests/app/program.h"
+#include "tests/support/scene_builder.h"
+#include "tests/support/scene_glb.h"
 #include "tests/support/scratch_folder.h"
 
 namespace lobe::test {
@@ -167,6 +169,27 @@ TEST_F(RenderViewsTest, AnInterruptKeepsFinishedFrames) {
     std::snprintf(name, sizeof name, "f_%04d.exr", int(i));
     EXPECT_EQ(std::get<int>(ReadExrAttributes(File(name)).at("lobeComplete")), 1) << name;
   }
+}
+
+// Cameras may be called anything; files may not lie in other folders, hide, or fall on one another.
+TEST_F(RenderViewsTest, NamesOfCamerasBecomeNamesOfFiles) {
+  const auto solve = [&](const std::vector<std::string>& cameras) {
+    SceneBuilder b;
+    b.AddBox({0, 0, 0}, {2, 2, 2}, b.AddEmitter(Rgb::Constant(1)), true);
+    for (const std::string& name : cameras) b.AddCamera(name, {1, 1, 1.5f}, {1, 1, 0});
+    WriteSceneGlb(b.Build(), File("scene.glb"));
+    ASSERT_EQ(RunQuietly({"solve", File("scene.glb"), "-o", File("named.glb"), "--edge", "2"}).exit_code, 0);
+  };
+  const auto render = [&] {
+    return RunQuietly({"render", File("named.glb"), "--all-cameras", "-o", File("{camera}.png"), "--size",
+                       "8x8", "--spp", "1"});
+  };
+  solve({"../up", ".hidden", "from the door"});
+  EXPECT_EQ(render().exit_code, 0);
+  EXPECT_THAT(folder_.Entries(),
+              ElementsAre("_._up.png", "_hidden.png", "from the door.png", "named.glb", "scene.glb"));
+  solve({"a/b", "a_b"});
+  ExpectOneSentence(render(), 1, {"named.glb", "'a/b' and 'a_b'", "a_b.png"});
 }
 
 TEST_F(RenderViewsTest, WrongUsageIsNamed) {

@@ -134,6 +134,7 @@ TEST(CameraPathFileTest, WhatIsWrongIsNamed) {
   };
   ExpectInputError([&] { ReadCameraPath(folder.File("none.json")); }, {"none.json", "cannot be read"});
   ExpectInputError([&] { ReadCameraPath(folder.path()); }, {"is a directory"});
+  ExpectInputError([] { ReadCameraPath("/dev/zero"); }, {"/dev/zero", "16 MB"});
   refused("", {"p.json", "JSON"});
   refused("{\"keyframes\": [", {"p.json", "JSON"});
   refused("[]", {"no array 'keyframes'"});
