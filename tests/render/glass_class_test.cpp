@@ -31,17 +31,17 @@ TEST(GlassClassTest, LPDE_LampsBehindPanesAreShot) {
     const uint32_t pane = AddPane(&b);
     b.Up(-3, 3, -3, 3, 0.5f, pane);
     b.Down(-3, 3, -3, 3, 0.7f, pane);  // facing either way
-    ExpectReceiverAsTraced(b, "LPDE", kBoth, 0.01, 10000);
+    ExpectReceiverAsTraced(b, "LPDE", kBoth, 0.01, 3000);
   }
 }
 
 // The lamp looks up, at a window that reflects some of its light.
 TEST(GlassClassTest, LSDE_ReflectedByAPane) {
   Stage b;
-  b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
-  b.Up(-0.8f, 0.8f, -0.8f, 0.8f, 0.6f, b.lamp);
-  b.Down(-4, 4, -4, 4, 1.1f, AddPane(&b));
-  ExpectReceiverAsTraced(b, "LSDE", kLinksOnly, 0.02, 60000, Options(Transport::kLinks, 2048));
+  b.Up(0, 1, -0.5f, 0.5f, 0, b.receiver);
+  b.Up(-1.5f, -0.5f, -0.5f, 0.5f, 0.7f, b.lamp);
+  b.Down(-4, 4, -4, 4, 1.6f, AddPane(&b));
+  ExpectReceiverAsTraced(b, "LSDE", kLinksOnly, 0.02, 100000, Options(Transport::kLinks, 2048));
 }
 
 TEST(GlassClassTest, LDPDE_DiffuseLightThroughAPane) {
@@ -58,7 +58,7 @@ TEST(GlassClassTest, LRDE_ThroughACoatedSlab) {
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
   b.Down(-0.8f, 0.8f, -0.8f, 0.8f, 1.2f, b.lamp);
   b.AddBox({-3, 0.4f, -3}, {3, 0.8f, 3}, b.AddMaterial("bottle", Bottle()));
-  ExpectReceiverAsTraced(b, "LRDE", kLinksOnly, 0.02, 40000);
+  ExpectReceiverAsTraced(b, "LRDE", kLinksOnly, 0.02, 20000);
 }
 
 TEST(GlassClassTest, LDRDE_DiffuseLightThroughABall) {
@@ -67,7 +67,7 @@ TEST(GlassClassTest, LDRDE_DiffuseLightThroughABall) {
   b.Up(-0.3f, 0.3f, -0.3f, 0.3f, 1.4f, b.lamp);
   b.Down(-1.2f, 1.2f, -1.2f, 1.2f, 2, b.AddLambert(Rgb(0.8f, 0.6f, 0.4f)));
   b.AddSphere({0, 0.7f, 0}, 0.5f, b.AddMaterial("bottle", Bottle()), 16);
-  ExpectReceiverAsTraced(b, "LDRDE", kLinksOnly, 0.02, 60000);
+  ExpectReceiverAsTraced(b, "LDRDE", kLinksOnly, 0.02, 30000);
 }
 
 // What is inside glass gets n^2 times the radiance, from a narrower cone.
@@ -76,17 +76,17 @@ TEST(GlassClassTest, LRDE_OntoAReceiverInsideABody) {
   b.Up(-0.3f, 0.3f, -0.3f, 0.3f, 0.3f, b.receiver);
   b.Down(-2, 2, -2, 2, 1.5f, b.lamp);
   b.AddBox({-0.6f, 0, -0.6f}, {0.6f, 0.8f, 0.6f}, b.AddMaterial("bottle", Bottle()));
-  ExpectReceiverAsTraced(b, "LRDE inside", kLinksOnly, 0.02, 40000);
+  ExpectReceiverAsTraced(b, "LRDE inside", kLinksOnly, 0.02, 20000);
 }
 
 // The lamp's image behind a mirror is aimed at; a pane in front of the mirror is passed twice.
 TEST(GlassClassTest, LPSPDE_ASmallLampInAPlanarMirrorBehindAPane) {
   Stage b;
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
-  b.Up(-0.05f, 0.05f, -0.05f, 0.05f, 0.6f, b.lamp);
+  b.Up(-0.2f, 0.2f, -0.2f, 0.2f, 0.6f, b.lamp);
   b.Down(-2, 2, -2, 2, 1.2f, b.AddMaterial("mirror", Metal(0, Rgb(0.9f, 0.8f, 0.7f))));
   b.Down(-4, 4, -4, 4, 0.9f, AddPane(&b));
-  ExpectReceiverAsTraced(b, "LPSPDE", kLinksOnly, 0.03, 100000, Options(Transport::kLinks, 2048));
+  ExpectReceiverAsTraced(b, "LPSPDE", kLinksOnly, 0.03, 30000);
 }
 
 // Half of what gets into the pane its base reflects, both ways.
@@ -114,8 +114,9 @@ TEST(GlassClassTest, ARoomWithALampBehindAPaneIsNotDark) {
   const Estimate without = TracedIrradiance(open, points, 20000),
                  with = TracedIrradiance(glazed, points, 20000);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_LT(with.mean[c], 0.97 * without.mean[c]);
-    EXPECT_GT(with.mean[c], 0.85 * without.mean[c]);
+    // Most of what the pane reflects the ceiling sends back.
+    EXPECT_LT(with.mean[c], 0.99 * without.mean[c]);
+    EXPECT_GT(with.mean[c], 0.9 * without.mean[c]);
   }
   for (const Transport t : kBoth) {
     const Estimate got = OverSeeds(glazed, Options(t, 1024, 0.25f), IrradianceAt(points));
