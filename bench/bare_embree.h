@@ -12,8 +12,8 @@
 
 namespace lobe {
 
-/// Embree with nothing around it, the limit to compare with: no filter, no choice among equal hits, rays ready
-/// in packets of 16.
+/// Embree with nothing around it, the limit to compare with: no filter, no choice among equal hits, rays
+/// ready in packets of 16.
 class BareEmbree {
  public:
   explicit BareEmbree(const Scene& scene) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {

@@ -20,7 +20,7 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
     std::vector<RayHit> hits;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  std::vector<uint64_t> traced(TileCount(options.width, options.height), 0);
+  std::vector<uint64_t> traced(TileCount(options.width, options.height, kSmallTile), 0);
 
   const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
@@ -43,7 +43,7 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
     }
     traced[tile.index] = rays;
   };
-  const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
+  const bool complete = ForEachTile(options.width, options.height, kSmallTile, render_tile, progress);
 
   if (report) {
     *report = {};

@@ -10,6 +10,7 @@
 
 #include "brdf/frame.h"
 #include "render/eye_rays.h"
+#include "render/stored_tiles.h"
 #include "scene/mirror.h"
 
 namespace lobe {
@@ -34,7 +35,17 @@ struct Renderer::Impl {
     uint64_t rays = 0;
   };
 
-  explicit Impl(const Solution& s) : solution(s), tracer(s.scene) {}
+  const StoredTiles tiles;
+
+  explicit Impl(const Solution& s) : solution(s), tracer(s.scene), tiles(s, tracer, WithoutMirrors(s)) {}
+
+  // Of every side of every material: is what one sees of it the light stored there?
+  static std::vector<uint8_t> WithoutMirrors(const Solution& s) {
+    std::vector<uint8_t> handled;
+    for (const GlossKind kind : s.material_kinds)
+      handled.insert(handled.end(), 2, kind != GlossKind::kMirror);
+    return handled;
+  }
 
   // Reflected light stored at a place, towards `wo`, unclamped.
   Rgb Stored(const Mesh::Location& where, const Vec3& wo, float* basis) const {
@@ -98,41 +109,25 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
                        const std::function<bool(double)>& progress) const {
   const auto start = std::chrono::steady_clock::now();
   const EyeRays eye_rays(view, options);
-  const int samples = eye_rays.per_pixel();
   Image image(options.width, options.height);
 
-  struct Scratch {
-    std::vector<Ray> rays;
-    std::vector<RayHit> hits;
-    std::vector<float> basis = std::vector<float>(kMaxBasisSize);
-  };
-  tbb::enumerable_thread_specific<Scratch> scratches;
-  std::vector<Impl::Sums> sums(TileCount(options.width, options.height));
+  tbb::enumerable_thread_specific<std::vector<float>> bases([] { return std::vector<float>(kMaxBasisSize); });
+  const int tile_side = impl_->tiles.TileSide(eye_rays, options.width, options.height);
+  std::vector<Impl::Sums> sums(TileCount(options.width, options.height, tile_side));
 
   const auto render_tile = [&](const Tile& tile) {
-    Scratch& scratch = scratches.local();
-    scratch.rays.clear();
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) eye_rays.Append(x, y, &scratch.rays);
-    }
-    scratch.hits.resize(scratch.rays.size());
-    impl_->tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
     Impl::Sums& sum = sums[tile.index];
-    sum.rays += scratch.rays.size();
-    size_t ray = 0;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        Rgb pixel = Rgb::Zero();
-        for (int s = 0; s < samples; ++s, ++ray) {
-          pixel += impl_->Shade(scratch.rays[ray], scratch.hits[ray], options.max_mirror_depth,
-                                scratch.basis.data(), sum);
-        }
-        image.at(x, y) = pixel / float(samples);
-        sum.shown += pixel.sum();
-      }
-    }
+    float* basis = bases.local().data();
+    const auto shade = [&](const Ray& ray, const RayHit& hit) {
+      return impl_->Shade(ray, hit, options.max_mirror_depth, basis, sum);
+    };
+    StoredTiles::Sums stored;
+    impl_->tiles.Render(eye_rays, tile, shade, &image, &stored);
+    sum.clamped += stored.clamped;
+    sum.shown += stored.shown;
+    sum.rays += stored.rays;
   };
-  const bool complete = ForEachTile(options.width, options.height, render_tile, progress);
+  const bool complete = ForEachTile(options.width, options.height, tile_side, render_tile, progress);
 
   if (report) {
     *report = {};
@@ -145,7 +140,7 @@ Image Renderer::Render(const CameraView& view, const RenderOptions& options, Ren
     }
     report->clamped = shown > 0 ? clamped / shown : 0;
     // Light behind the last mirror is taken to be as bright as the picture.
-    report->cut_off = cut / (3.0 * double(samples) * options.width * options.height);
+    report->cut_off = cut / (3.0 * eye_rays.per_pixel() * options.width * options.height);
     report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

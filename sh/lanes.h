@@ -6,8 +6,8 @@
 #include <emmintrin.h>
 #endif
 
-/// Sixteen numbers side by side: GCC's and Clang's vectors, cut to what the processor has. Meant for functions
-/// marked LOBE_SIMD_CLONES (sh/simd.h); arrays of lanes are plain arrays everywhere else.
+/// Sixteen numbers side by side: GCC's and Clang's vectors, cut to what the processor has. Meant for
+/// functions marked LOBE_SIMD_CLONES (sh/simd.h); arrays of lanes are plain arrays everywhere else.
 namespace lobe {
 
 inline constexpr int kLanes = 16;
@@ -19,7 +19,9 @@ typedef uint32_t UintLanes __attribute__((vector_size(4 * kLanes)));
 #define LOBE_INLINE inline __attribute__((always_inline))
 
 /// Arrays must be aligned to 64 bytes.
-LOBE_INLINE const FloatLanes& AsLanes(const float* from) { return *reinterpret_cast<const FloatLanes*>(from); }
+LOBE_INLINE const FloatLanes& AsLanes(const float* from) {
+  return *reinterpret_cast<const FloatLanes*>(from);
+}
 LOBE_INLINE FloatLanes& AsLanes(float* at) { return *reinterpret_cast<FloatLanes*>(at); }
 LOBE_INLINE const UintLanes& AsLanes(const uint32_t* from) {
   return *reinterpret_cast<const UintLanes*>(from);
@@ -30,7 +32,7 @@ LOBE_INLINE UintLanes& AsLanes(uint32_t* at) { return *reinterpret_cast<UintLane
 LOBE_INLINE uint32_t LaneBits(const IntLanes& condition) {
 #if defined(__SSE2__)
   typedef signed char Bytes __attribute__((vector_size(kLanes)));
-  return uint32_t(_mm_movemask_epi8((__m128i)__builtin_convertvector(condition, Bytes)));
+  return uint32_t(_mm_movemask_epi8((__m128i) __builtin_convertvector(condition, Bytes)));
 #else
   uint32_t bits = 0;
   for (int i = 0; i < kLanes; ++i) bits |= uint32_t(condition[i] & 1) << i;

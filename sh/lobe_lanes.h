@@ -7,9 +7,9 @@
 
 namespace lobe {
 
-/// Reads a three-channel lobe in sixteen directions side by side, from coefficients as they are stored: nothing
-/// to pack, so no memory beyond a table by degree. Where directions come one at a time and lobes are read many
-/// times, LobeReader is the one to take.
+/// Reads a three-channel lobe in sixteen directions side by side, from coefficients as they are stored:
+/// nothing to pack, so no memory beyond a table by degree. Where directions come one at a time and lobes are
+/// read many times, LobeReader is the one to take.
 ///
 ///   L(w) = sum_m {cos, sin}(m phi) sin^m(theta) sum_j Q_mj(z^2) c_(m + 2j, +-m),  Q as in HemisphereBasis.
 ///
@@ -21,8 +21,8 @@ class LobeLanes {
 
   int l_max() const { return l_max_; }
 
-  /// Adds to `out` (channel c of lane i at c * kLanes + i) the lobe of degree `l` towards unit vectors (x, y, z),
-  /// z >= 0. `coefficients`: channel after channel, CoefficientCount(l) each. `x`, `y`, `z` and `out` are
+  /// Adds to `out` (channel c of lane i at c * kLanes + i) the lobe of degree `l` towards unit vectors (x, y,
+  /// z), z >= 0. `coefficients`: channel after channel, CoefficientCount(l) each. `x`, `y`, `z` and `out` are
   /// aligned to 64 bytes.
   void Add(const float* coefficients, int l, const float* x, const float* y, const float* z,
            float* out) const;
