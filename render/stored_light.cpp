@@ -49,11 +49,13 @@ LOBE_SIMD_CLONES void ToLocal(const Frame& frame, float sign, const float* px, c
   const FloatLanes squared = x * x + y * y;
   FloatLanes length;
   for (int i = 0; i < kLanes; ++i) length[i] = std::sqrt(squared[i]);
-  const FloatLanes one = FloatLanes{} + 1.0f, scale = z < 0 ? 1.0f / length : one;
-  const IntLanes straight_below = (z < 0) & (squared == 0);
-  AsLanes(out) = straight_below ? one : x * scale;
-  AsLanes(out + kLanes) = straight_below ? FloatLanes{} : y * scale;
-  AsLanes(out + 2 * kLanes) = z < 0 ? FloatLanes{} : z;
+  // Straight below has no horizon to go to: as BendToHorizon, to x.
+  const FloatLanes one = FloatLanes{} + 1.0f, zero = {};
+  const IntLanes below = Negative(z), aside = Different((UintLanes)squared, UintLanes{});
+  const FloatLanes scale = Select(aside, 1.0f / length, zero);
+  AsLanes(out) = Select(below, x * scale + Select(aside, zero, one), x);
+  AsLanes(out + kLanes) = Select(below, y * scale, y);
+  AsLanes(out + 2 * kLanes) = Select(below, zero, z);
 }
 
 // Lagrange's functions of n Chebyshev points: (1 + 2 sum_k T_k(s_i) T_k(s)) / n.
@@ -211,7 +213,7 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
   FloatLanes out[3] = {zero, zero, zero}, clamped = {};
   FloatLanes basis[kMaxGrid * kMaxGrid];
   int basis_points = 0;
-  uint32_t left = lanes & ~LaneBits((IntLanes)(face_side == kNone)), unhandled = 0;
+  uint32_t left = lanes & SignBits(Different(face_side, UintLanes{} + kNone)), unhandled = 0;
   const Place* place = state.last;
   while (left != 0) {
     FloatLanes w[3];
@@ -219,8 +221,8 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
       w[0] = place->w0[0] * u + place->w0[1] * v + place->w0[2];
       w[1] = place->w1[0] * u + place->w1[1] * v + place->w1[2];
       w[2] = 1 - w[0] - w[1];
-      return left &
-             LaneBits((IntLanes)(face_side == place->face_side) & (w[0] >= 0) & (w[1] >= 0) & (w[2] >= 0));
+      return left & ~SignBits(Different(face_side, UintLanes{} + place->face_side) | (IntLanes)w[0] |
+                              (IntLanes)w[1] | (IntLanes)w[2]);
     };
     uint32_t taken = inside();
     if (taken == 0) {
@@ -244,7 +246,10 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
       for (int k = 0; k < place->count; ++k) sum += w[place->corner[k]];
       for (int k = 0; k < place->count; ++k) {
         FloatLanes weight = w[place->corner[k]];
-        if (place->count < 3) weight = sum > 1e-6f ? weight / sum : zero + 1.0f / float(place->count);
+        if (place->count < 3) {
+          const FloatLanes even = zero + 1.0f / float(place->count);
+          weight = Select(Negative(1e-6f - sum), weight / sum, even);
+        }
         const uint32_t slot = state.FindNode(place->node[k]);
         const int n = state.points[slot];
         if (n == 0) {
@@ -271,17 +276,16 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
         for (int c = 0; c < 3; ++c) stored[c] += weight * value[c];
       }
     }
-    IntLanes mask;
-    LanesOfBits(taken, &mask);
+    const IntLanes here = LanesOfBits(taken);
     for (int c = 0; c < 3; ++c) {
-      const FloatLanes shown = stored[c] > 0 ? stored[c] : zero;
-      clamped += mask ? shown - stored[c] : zero;
-      out[c] = mask ? shown + place->emission[c] : out[c];
+      const FloatLanes shown = Select(Negative(stored[c]), zero, stored[c]);
+      clamped += Select(here, shown - stored[c], zero);
+      out[c] = Select(here, shown + place->emission[c], out[c]);
     }
   }
   state.last = place;
   for (int c = 0; c < 3; ++c) AsLanes(radiance + c * kLanes) = out[c];
-  if (LaneBits(clamped > 0) != 0) {
+  if (SignBits(-(IntLanes)clamped) != 0) {
     for (int i = 0; i < kLanes; ++i) state.clamped += clamped[i];
   }
   return unhandled;

@@ -117,8 +117,9 @@ LOBE_SIMD_CLONES void TakeHits(const RTCRayHit16& p, PacketHits* hits) {
   const FloatLanes cosine = AsLanes(p.hit.Ng_x) * AsLanes(p.ray.dir_x) +
                             AsLanes(p.hit.Ng_y) * AsLanes(p.ray.dir_y) +
                             AsLanes(p.hit.Ng_z) * AsLanes(p.ray.dir_z);
-  const UintLanes front = (UintLanes)(cosine < 0), missed = (UintLanes)(AsLanes(p.hit.geomID) == kNone);
-  AsLanes(hits->face_side) = (2 * AsLanes(p.hit.primID) + 1 + front) | missed;
+  const UintLanes front = (UintLanes)Negative(cosine);
+  // All faces are geometry 0, so its number is zero or, if there was no hit, all ones.
+  AsLanes(hits->face_side) = (2 * AsLanes(p.hit.primID) + 1 + front) | AsLanes(p.hit.geomID);
   AsLanes(hits->t) = AsLanes(p.ray.tfar);
   AsLanes(hits->u) = AsLanes(p.hit.u);
   AsLanes(hits->v) = AsLanes(p.hit.v);
