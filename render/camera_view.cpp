@@ -43,6 +43,11 @@ Ray CameraView::EyeRay(float x, float y) const {
   return ray;
 }
 
+CameraView::Film CameraView::film() const {
+  return {-tan_x_ * camera_.right + tan_y_ * camera_.up - camera_.back,
+          2 * tan_x_ / float(width_) * camera_.right, -2 * tan_y_ / float(height_) * camera_.up};
+}
+
 std::vector<float> CameraView::WorldToCamera() const { return Floats(WorldToCameraMatrix(camera_)); }
 
 std::vector<float> CameraView::WorldToNdc() const {

@@ -14,6 +14,12 @@ class CameraView {
   /// Through film position (x, y) in pixels, from the top left corner of the picture; pixel (i, j) has
   /// its centre at (i + 0.5, j + 0.5). Unit direction, t from 0 to infinity.
   Ray EyeRay(float x, float y) const;
+  /// The same directions before they are made unit: corner + x * dx + y * dy, on the film one metre in front
+  /// of the eye.
+  struct Film {
+    Vec3 corner, dx, dy;
+  };
+  Film film() const;
   const Camera& camera() const { return camera_; }
 
   /// The OpenEXR standard attributes of these names (ImfStandardAttributes.h), 16 floats row-major, to

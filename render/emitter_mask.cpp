@@ -34,7 +34,7 @@ Mask EmitterMask(const Scene& scene, const RayTracer& tracer, const CameraView& 
     std::vector<RayHit> hits;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  ForEachTile(wider,
+  ForEachTile(wider, kSmallTile,
               [&](const Tile& tile) {
                 Scratch& scratch = scratches.local();
                 for (int y = std::max(tile.y0, seen.y0); y < std::min(tile.y1, seen.y1); ++y) {

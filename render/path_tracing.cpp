@@ -21,7 +21,7 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
     std::vector<RayHit> hits;
   };
   tbb::enumerable_thread_specific<Scratch> scratches;
-  std::vector<uint64_t> traced(TileCount(options), 0);
+  std::vector<uint64_t> traced(TileCount(options, kSmallTile), 0);
 
   const auto render_tile = [&](const Tile& tile) {
     Scratch& scratch = scratches.local();
@@ -45,7 +45,7 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
     }
     traced[tile.index] = rays;
   };
-  const bool complete = ForEachTile(options, render_tile, progress);
+  const bool complete = ForEachTile(options, kSmallTile, render_tile, progress);
 
   if (report) {
     *report = {};

@@ -1,6 +1,9 @@
 #include "render/renderer.h"
 
+#include <algorithm>
 #include <chrono>
+#include <map>
+#include <mutex>
 #include <span>
 #include <sstream>
 
@@ -8,8 +11,10 @@
 
 #include "render/eye_rays.h"
 #include "render/eye_shader.h"
+#include "render/stored_tiles.h"
 
 namespace lobe {
+
 std::string RenderOptions::Validate() const {
   std::ostringstream out;
   if (width < 1 || height < 1 || width > 65536 || height > 65536) {
@@ -30,11 +35,78 @@ std::string RenderOptions::Validate() const {
   return out.str();
 }
 
+namespace {
+
+// What a pixel's random numbers follow from.
+uint64_t PixelKey(const RenderOptions& options, int x, int y) {
+  return Mix(Mix(options.seed, 0x9a7e), uint64_t(y) * options.width + x);
+}
+
+}  // namespace
+
 struct Renderer::Impl {
   const Solution& solution;
   EyeShader shader;
 
+  std::mutex tiles_mutex;
+  std::map<std::vector<uint8_t>, std::unique_ptr<StoredTiles>> tiles;  // by what they handle
+
   explicit Impl(const Solution& s) : solution(s), shader(s) {}
+
+  struct Scratch {
+    std::vector<Ray> rays;
+    std::vector<RayHit> hits;
+    EyeShader::Work work;
+  };
+  struct Sums {  // of a tile
+    double clamped = 0, cut_off = 0, shown = 0;
+    uint64_t rays = 0;
+  };
+
+  // For pictures in this mode: what it reads from lobes alone they read, packet by packet.
+  const StoredTiles& TilesFor(const RenderOptions& options) {
+    std::vector<uint8_t> handled;
+    for (uint32_t m = 0; m < solution.scene.materials.size(); ++m) {
+      const bool stored = shader.paths().specular().kind(m) == SpecularSurfaces::Kind::kNone &&
+                          shader.ReadingOf(m, options) == EyeShader::Reading::kStored;
+      handled.insert(handled.end(), 2, stored);
+    }
+    const std::lock_guard lock(tiles_mutex);
+    auto& out = tiles[handled];
+    if (!out) {
+      out = std::make_unique<StoredTiles>(solution, shader.paths().tracer(), shader.stored().locator(),
+                                          std::move(handled));
+    }
+    return *out;
+  }
+
+  // Every eye ray on its own, so that what it brings can be told apart.
+  void RenderLayers(const CameraView& view, const EyeRays& eye_rays, const RenderOptions& options,
+                    const LayerSet& wanted, const Tile& tile, Scratch& scratch, LayeredImage* image,
+                    Sums* sum) const {
+    const int samples = eye_rays.per_pixel();
+    const PixelRect window = options.Window();
+    const bool split = wanted.Has(Layer::kDirect) || wanted.Has(Layer::kIndirect);
+    scratch.hits.resize(samples);
+    for (int y = std::max(tile.y0, window.y0); y < std::min(tile.y1, window.y1); ++y) {
+      for (int x = std::max(tile.x0, window.x0); x < std::min(tile.x1, window.x1); ++x) {
+        scratch.rays.clear();
+        eye_rays.Append(x, y, &scratch.rays);
+        shader.paths().tracer().Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+        EyeLight light;
+        for (int s = 0; s < samples; ++s) {
+          light += shader.Shade(scratch.rays[s], scratch.hits[s], options,
+                                {PixelKey(options, x, y), uint32_t(s)}, split, scratch.work);
+        }
+        const Rgb colour = light.Sum();
+        image->color.at(x - window.x0, y - window.y0) = colour / float(samples);
+        sum->shown += colour.sum();
+        sum->clamped += light.clamped.sum();
+        sum->rays += uint64_t(samples);
+        PutLayers(view, scratch.rays, scratch.hits, light, x - window.x0, y - window.y0, image);
+      }
+    }
+  }
 
   // One pixel's layers, from its eye rays, what they hit and the light they brought.
   void PutLayers(const CameraView& view, std::span<const Ray> rays, std::span<const RayHit> hits,
@@ -99,78 +171,51 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
                               RenderReport* report, const std::function<bool(double)>& progress) const {
   const auto start = std::chrono::steady_clock::now();
   const EyeRays eye_rays(view, options);
-  const int samples = eye_rays.per_pixel();
   const PixelRect window = options.Window();
   LayeredImage image(window.width(), window.height(), wanted);
 
-  struct Scratch {
-    std::vector<Ray> rays;
-    std::vector<RayHit> hits;
-    EyeShader::Work work;
-  };
-  tbb::enumerable_thread_specific<Scratch> scratches;
-  struct Sums {  // of a tile
-    double clamped = 0, cut_off = 0, shown = 0;
-    uint64_t rays = 0, pixels = 0;
-  };
-  std::vector<Sums> sums(TileCount(options));
-  const bool split = wanted.Has(Layer::kDirect) || wanted.Has(Layer::kIndirect);
-
+  const StoredTiles& tiles = impl_->TilesFor(options);
+  const int side = wanted.empty() ? tiles.TileSide(eye_rays, options.width, options.height) : kSmallTile;
+  tbb::enumerable_thread_specific<Impl::Scratch> scratches;
+  std::vector<Impl::Sums> sums(TileCount(options, side));
   const auto render_tile = [&](const Tile& tile) {
-    Scratch& scratch = scratches.local();
+    Impl::Scratch& scratch = scratches.local();
+    Impl::Sums& sum = sums[tile.index];
     scratch.work.rays = 0;
     scratch.work.cut_off = 0;
-    scratch.rays.clear();
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) eye_rays.Append(x, y, &scratch.rays);
+    if (!wanted.empty()) {
+      impl_->RenderLayers(view, eye_rays, options, wanted, tile, scratch, &image, &sum);
+    } else {
+      const auto shade = [&](const Ray& ray, const RayHit& hit, int x, int y, int sample) {
+        const EyeLight light =
+            impl_->shader.Shade(ray, hit, options, {PixelKey(options, x, y), uint32_t(sample)},
+                                /*split=*/false, scratch.work);
+        sum.clamped += light.clamped.sum();
+        return light.Sum();
+      };
+      StoredTiles::Sums stored;
+      tiles.Render(eye_rays, tile, window, shade, &image.color, &stored);
+      sum.clamped += stored.clamped;
+      sum.shown += stored.shown;
+      sum.rays += stored.rays;
     }
-    scratch.hits.resize(scratch.rays.size());
-    impl_->shader.paths().tracer().Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
-    Sums& sum = sums[tile.index];
-    size_t ray = 0;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        const uint64_t key = Mix(Mix(options.seed, 0x9a7e), uint64_t(y) * options.width + x);
-        EyeLight pixel;
-        for (int s = 0; s < samples; ++s) {
-          pixel += impl_->shader.Shade(scratch.rays[ray + s], scratch.hits[ray + s], options,
-                                       {key, uint32_t(s)}, split, scratch.work);
-        }
-        const Rgb colour = pixel.Sum();
-        sum.shown += colour.sum();
-        sum.clamped += pixel.clamped.sum();
-        ++sum.pixels;
-        if (window.Contains(x, y)) {
-          const int column = x - window.x0, row = y - window.y0;
-          image.color.at(column, row) = colour / float(samples);
-          if (!wanted.empty()) {
-            const std::span rays(scratch.rays.data() + ray, samples);
-            const std::span hits(scratch.hits.data() + ray, samples);
-            impl_->PutLayers(view, rays, hits, pixel, column, row, &image);
-          }
-        }
-        ray += samples;
-      }
-    }
-    sum.rays = scratch.rays.size() + scratch.work.rays;
-    sum.cut_off = scratch.work.cut_off;
+    sum.rays += scratch.work.rays;
+    sum.cut_off += scratch.work.cut_off;
   };
-  const bool complete = ForEachTile(options, render_tile, progress);
+  const bool complete = ForEachTile(options, side, render_tile, progress);
 
   if (report) {
     *report = {};
     double clamped = 0, shown = 0, cut = 0;
-    uint64_t pixels = 0;
     for (const auto& s : sums) {
       clamped += s.clamped;
       shown += s.shown;
       cut += s.cut_off;
-      pixels += s.pixels;
       report->rays += s.rays;
     }
     report->clamped = shown > 0 ? clamped / shown : 0;
     // Light behind the last mirror is taken to be as bright as the picture.
-    report->cut_off = pixels > 0 ? cut / (3.0 * double(samples) * double(pixels)) : 0;
+    report->cut_off = cut / (3.0 * eye_rays.per_pixel() * window.width() * window.height());
     report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

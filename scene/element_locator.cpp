@@ -64,6 +64,16 @@ ElementLocator::ElementLocator(const Mesh& mesh)
   });
 }
 
+const ElementLocator::Leaf& ElementLocator::FindLeaf(uint32_t face_side, float u, float v) const {
+  uint32_t at = roots_[face_side];
+  for (uint32_t level = depths_[face_side]; level > 0; --level) {
+    const Split& s = splits_[at];
+    if (s.child == at) break;
+    at = s.child + uint32_t(s.u * u + s.v * v + s.constant < 0);
+  }
+  return leaves_[leaf_of_cell_[at]];
+}
+
 void ElementLocator::Locate(std::span<const RayHit> hits, std::span<Mesh::Location> where) const {
   for (size_t begin = 0; begin < hits.size(); begin += kTogether) {
     const int count = int(std::min<size_t>(kTogether, hits.size() - begin));

@@ -26,14 +26,18 @@ class ElementLocator {
     return where;
   }
 
+  /// Weights of an element's nodes as functions of the face's barycentrics.
+  struct Leaf {
+    std::array<float, 3> w0, w1;  ///< weights of the first two nodes: factors of u, v and a constant
+    uint32_t element;             ///< kNone: that side has no nodes
+  };
+  /// `face_side`: 2 * face + side.
+  const Leaf& FindLeaf(uint32_t face_side, float u, float v) const;
+
  private:
   struct Split {
     float u, v, constant;  ///< below 0: second child
     uint32_t child;        ///< of a leaf: itself, so that going on stays
-  };
-  struct Leaf {
-    std::array<float, 3> w0, w1;  ///< weights of the first two nodes: factors of u, v and a constant
-    uint32_t element;
   };
   std::vector<uint32_t> roots_;   // as Mesh::roots; where a side has no nodes, a leaf without element
   std::vector<uint32_t> depths_;  // of the roots' trees

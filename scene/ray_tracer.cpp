@@ -10,6 +10,7 @@
 
 #include "scene/input_error.h"
 #include "scene/repeated_faces.h"
+#include "sh/simd.h"
 
 namespace lobe {
 
@@ -90,6 +91,38 @@ void PutRay(const Ray& ray, int i, Lanes* lanes) {
   lanes->mask[i] = kAllMasks;
   lanes->id[i] = static_cast<unsigned>(i);
   lanes->flags[i] = 0;
+}
+
+LOBE_SIMD_CLONES void FillPacket(const Vec3& origin, const float* x, const float* y, const float* z,
+                                 RTCRayHit16* p) {
+  const FloatLanes zero = {};
+  const UintLanes all_ones = UintLanes{} - 1;
+  static_assert(kAllMasks == 0xffffffffu && RTC_INVALID_GEOMETRY_ID == 0xffffffffu);
+  AsLanes(p->ray.org_x) = zero + origin.x();
+  AsLanes(p->ray.org_y) = zero + origin.y();
+  AsLanes(p->ray.org_z) = zero + origin.z();
+  AsLanes(p->ray.tnear) = zero;
+  AsLanes(p->ray.dir_x) = AsLanes(x);
+  AsLanes(p->ray.dir_y) = AsLanes(y);
+  AsLanes(p->ray.dir_z) = AsLanes(z);
+  AsLanes(p->ray.time) = zero;
+  AsLanes(p->ray.tfar) = zero + std::numeric_limits<float>::infinity();
+  AsLanes(p->ray.mask) = all_ones;
+  AsLanes(p->ray.flags) = UintLanes{};
+  AsLanes(p->hit.geomID) = all_ones;
+}
+
+// As MakeHit, where no face repeats another.
+LOBE_SIMD_CLONES void TakeHits(const RTCRayHit16& p, PacketHits* hits) {
+  const FloatLanes cosine = AsLanes(p.hit.Ng_x) * AsLanes(p.ray.dir_x) +
+                            AsLanes(p.hit.Ng_y) * AsLanes(p.ray.dir_y) +
+                            AsLanes(p.hit.Ng_z) * AsLanes(p.ray.dir_z);
+  const UintLanes front = (UintLanes)Negative(cosine);
+  // All faces are geometry 0, so its number is zero or, if there was no hit, all ones.
+  AsLanes(hits->face_side) = (2 * AsLanes(p.hit.primID) + 1 + front) | AsLanes(p.hit.geomID);
+  AsLanes(hits->t) = AsLanes(p.ray.tfar);
+  AsLanes(hits->u) = AsLanes(p.hit.u);
+  AsLanes(hits->v) = AsLanes(p.hit.v);
 }
 
 template <int width>
@@ -312,6 +345,28 @@ void RayTracer::IntersectFan(const Vec3& origin, const float* x, const float* y,
   if (impl_->packet_width == 8) return impl_->IntersectFan<8>(origin, x, y, z, hits);
   for (size_t i = 0; i < hits.size(); ++i) {
     hits[i] = impl_->IntersectOne({origin, 0.0f, {x[i], y[i], z[i]}, std::numeric_limits<float>::infinity()});
+  }
+}
+
+void RayTracer::IntersectPacket(const Vec3& origin, const float* x, const float* y, const float* z,
+                                PacketHits* hits) const {
+  if (impl_->packet_width == 16 && impl_->repeated.twins.empty()) {
+    Query query(true);
+    alignas(64) int valid[kLanes];
+    std::fill(valid, valid + kLanes, -1);
+    RTCRayHit16 p;
+    FillPacket(origin, x, y, z, &p);
+    rtcIntersect16(valid, impl_->scene, &query.context, &p);
+    TakeHits(p, hits);
+    return;
+  }
+  RayHit each[kLanes];
+  IntersectFan(origin, x, y, z, each);
+  for (int i = 0; i < kLanes; ++i) {
+    hits->face_side[i] = each[i].hit() ? 2 * each[i].face + uint32_t(each[i].side) : kNone;
+    hits->t[i] = each[i].t;
+    hits->u[i] = each[i].u;
+    hits->v[i] = each[i].v;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "sh/lanes.h"
 
 namespace lobe {
 
@@ -22,6 +23,16 @@ struct RayHit {
   float u = 0, v = 0;  ///< barycentrics of Face::vertex[1], [2]
   Side side = Side::kFront;
   bool hit() const { return face != kNone; }
+};
+
+/// Hits of kLanes rays side by side.
+struct PacketHits {
+  alignas(64) uint32_t face_side[kLanes];  ///< 2 * face + side, as in Mesh::roots; kNone: nothing hit
+  alignas(64) float t[kLanes], u[kLanes], v[kLanes];
+  RayHit at(int lane) const {
+    if (face_side[lane] == kNone) return {};
+    return {face_side[lane] / 2, t[lane], u[lane], v[lane], Side(face_side[lane] % 2)};
+  }
 };
 
 /// Visibility among the scene's input triangles. The one place that knows Embree. Const methods may
@@ -47,6 +58,9 @@ class RayTracer {
   /// reported may depend on the other rays of the fan.
   void IntersectFan(const Vec3& origin, const float* x, const float* y, const float* z,
                     std::span<RayHit> hits) const;
+  /// The same for kLanes rays; `x`, `y` and `z` are aligned to 64 bytes.
+  void IntersectPacket(const Vec3& origin, const float* x, const float* y, const float* z,
+                       PacketHits* hits) const;
 
   /// Distance by which ray origins are lifted off surfaces: a few rounding errors of coordinates this far
   /// from the origin, and no more, so that contacts do not leak.
