@@ -69,6 +69,37 @@ void LeaveOutBackground(Pictures* p) {
   p->mask = background;
 }
 
+/// Where a crop lies in its full picture; nothing if it is no crop, or lies elsewhere.
+std::optional<PixelRect> PlaceOfCrop(const ExrWindows& windows) {
+  const PixelRect &data = windows.data, &full = windows.display;
+  const bool inside = data.x0 >= full.x0 && data.y0 >= full.y0 && data.x1 <= full.x1 && data.y1 <= full.y1;
+  if (data == full || !inside) return std::nullopt;
+  return PixelRect{data.x0 - full.x0, data.y0 - full.y0, data.x1 - full.x0, data.y1 - full.y0};
+}
+
+Mask Part(const Mask& mask, const PixelRect& rect) {
+  Mask part{rect.width(), rect.height(), {}};
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) part.set.push_back(mask.set[size_t(y) * mask.width + x]);
+  }
+  return part;
+}
+
+/// A crop is compared with its part of full references and masks.
+void CutToCrop(const std::string& path, Pictures* p) {
+  const ExrWindows windows = ReadExrWindows(path);
+  const std::optional<PixelRect> rect = PlaceOfCrop(windows);
+  if (!rect) return;
+  const auto cut = [&](auto* whole) {
+    if (whole->width == windows.display.width() && whole->height == windows.display.height()) {
+      *whole = Part(*whole, *rect);
+    }
+  };
+  cut(&p->reference);
+  if (p->reference2) cut(&*p->reference2);
+  if (p->mask) cut(&*p->mask);
+}
+
 Pictures Read(const CompareFlags& flags) {
   Pictures p;
   const auto read = [&](const std::string& path) {
@@ -81,6 +112,7 @@ Pictures Read(const CompareFlags& flags) {
   p.reference = read(flags.reference);
   if (flags.reference2) p.reference2 = read(*flags.reference2);
   if (flags.mask) p.mask = ReadPngMask(*flags.mask);
+  CutToCrop(flags.picture, &p);
   return p;
 }
 
@@ -215,7 +247,9 @@ void AddCompareCommand(CLI::App& app, Command* command) {
       "  lobe compare view.exr reference.exr --layer albedo --layout map -o difference.png\n"
       "  lobe compare dark.exr reference.exr --exposure 3 --tone filmic --json");
   compare->add_option("A", flags->picture, "Picture, OpenEXR")->type_name("")->required();
-  compare->add_option("REF", flags->reference, "Reference, OpenEXR of the same size")
+  compare
+      ->add_option("REF", flags->reference,
+                   "Reference, OpenEXR of the same size, or the whole that A is a crop of")
       ->type_name("")
       ->required();
   compare->add_option("REF2", flags->reference2, "Second, independent reference")->type_name("");

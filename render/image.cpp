@@ -5,6 +5,14 @@
 
 namespace lobe {
 
+Image Part(const Image& image, const PixelRect& rect) {
+  Image part(rect.width(), rect.height());
+  for (int y = 0; y < part.height; ++y) {
+    std::copy_n(&image.at(rect.x0, rect.y0 + y), part.width, &part.at(0, y));
+  }
+  return part;
+}
+
 unsigned char ToSrgb8(float linear, float exposure) {
   const float v = linear * std::exp2(exposure);
   if (!(v > 0)) return 0;  // negative and NaN show as black

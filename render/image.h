@@ -29,6 +29,9 @@ struct Image {
   const Rgb& at(int x, int y) const { return pixels[size_t(y) * width + x]; }
 };
 
+/// The pixels of `rect`, which lies within the image.
+Image Part(const Image& image, const PixelRect& rect);
+
 /// sRGB transfer function (IEC 61966-2-1) of a linear value times 2^exposure, clamped, 0..255.
 unsigned char ToSrgb8(float linear, float exposure = 0);
 

@@ -98,6 +98,25 @@ TEST_F(CompareCommandTest, ItSaysWhetherTheReferencesNoiseIsIncluded) {
   EXPECT_THAT(same.err, HasSubstr("the two references are equal"));
 }
 
+TEST_F(CompareCommandTest, ACropIsComparedWithItsPartOfTheReference) {
+  LayeredImage whole(20, 12, {}), crop(6, 5, {});
+  for (size_t i = 0; i < whole.color.pixels.size(); ++i) whole.color.pixels[i].setConstant(1 + float(i));
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 6; ++x) crop.color.at(x, y) = whole.color.at(x + 9, y + 4);
+  }
+  Mask mask{20, 12, std::vector<bool>(240, false)};
+  mask.set[4 * 20 + 9] = mask.set[0] = true;  // the crop's first pixel, and one outside it
+  WritePngMask(mask, File("m.png"));
+  WriteExr(whole, {}, {}, File("whole.exr"));
+  WriteExr(crop, {}, {.full_width = 20, .full_height = 12, .left = 9, .top = 4}, File("crop.exr"));
+  const ProgramResult r =
+      RunLobe({"compare", File("crop.exr"), File("whole.exr"), "--mask", File("m.png"), "--json"});
+  const json c = json::parse(r.out, nullptr, false);
+  EXPECT_EQ(c["pixels"], 29) << r.err;
+  EXPECT_EQ(c["pixel_error"], 0);
+  ExpectOneSentence(RunQuietly({"compare", File("crop.exr"), File("a.exr")}), 1, {"6 x 5", "24 x 16"});
+}
+
 TEST_F(CompareCommandTest, WrongFlagsAreRefusedBeforeFilesAreRead) {
   const std::vector<std::string> start{"compare", "none.exr", "none.exr"};
   const auto refused = [&](std::vector<std::string> more, std::vector<std::string> parts) {
