@@ -110,7 +110,7 @@ void SayFigures(const RenderOptions& options, const RenderReport& report, const 
   console.Say(std::to_string(window.width()) + " x " + std::to_string(window.height()) + " pixels, " +
               Format("%.3g million eye rays and mirrors", double(report.rays) * 1e-6) +
               Format(", %.2f s", report.seconds) + Format("; clamped %.2g %%", 100 * report.clamped) +
-              Format(", behind too many mirrors %.2g %%", 100 * report.cut_off));
+              Format(", by mirrors and glass not followed %.2g %%", 100 * report.cut_off));
 }
 
 ExitCode RunRender(RenderFlags flags, Console& console) {
@@ -230,6 +230,13 @@ void AddRenderCommand(CLI::App& app, Command* command) {
       ->add_option("--max-mirror-depth", flags->options.max_mirror_depth,
                    "Mirrors and glass surfaces in a row that are followed")
       ->type_name("N")
+      ->capture_default_str();
+  render
+      ->add_option(
+          "--specular-cutoff", flags->options.specular_cutoff,
+          "Least throughput with which ways by mirrors and glass are followed on; what that costs is "
+          "printed")
+      ->type_name("X")
       ->capture_default_str();
   AddSeedFlag(render, &flags->options.seed);
   render->callback(

@@ -11,8 +11,6 @@ namespace {
 constexpr uint64_t kReflected = 0x5ef,
                    kTransmitted = 0x72a;  // what keys are mixed with behind a mirror, glass
 
-constexpr float kLeastThroughput = 1e-3f;  // of a way by mirrors and glass that is still followed
-
 }  // namespace
 
 // One way from the eye to a surface, and where to put what it brings.
@@ -90,7 +88,8 @@ void EyeShader::Follow(const Ray& ray, const RayHit& hit, Way way, Task& task) c
     if (!next_way.open()) return;
     Way next = way;
     next.throughput *= next_way.weight;
-    if (way.mirrors == task.options.max_mirror_depth || next.throughput.maxCoeff() < kLeastThroughput) {
+    if (way.mirrors == task.options.max_mirror_depth ||
+        next.throughput.maxCoeff() < task.options.specular_cutoff) {
       task.work.cut_off += next.throughput.sum();
       return;
     }

@@ -27,6 +27,8 @@ std::string RenderOptions::Validate() const {
     out << "samples per pixel " << samples_per_pixel << " is out of range: 1 to 65536 is expected";
   } else if (max_mirror_depth < 0 || max_mirror_depth > 1000) {
     out << "mirror depth " << max_mirror_depth << " is out of range: 0 to 1000 is expected";
+  } else if (!(specular_cutoff >= 0 && specular_cutoff < 1)) {
+    out << "specular cut-off " << specular_cutoff << " is out of range: at least 0 and below 1 is expected";
   } else if (light_samples < 1 || light_samples > 65536) {
     out << "light samples " << light_samples << " is out of range: 1 to 65536 is expected";
   } else if (gather_samples < 1 || gather_samples > 65536) {

@@ -31,7 +31,10 @@ struct RenderOptions {
   /// Eye rays per pixel, stratified; rounded up to a square.
   int samples_per_pixel = 16;
   PixelFilter filter = PixelFilter::kBox;
+  /// Mirrors and glass surfaces in a row that are followed, and the least throughput (largest channel) with
+  /// which a way by them is followed on. What is lost: RenderReport::cut_off.
   int max_mirror_depth = 16;
+  float specular_cutoff = 1e-3f;
   RenderMode mode = RenderMode::kAuto;
   int light_samples = 1;     ///< per eye ray, in mode direct
   int gather_samples = 4;    ///< per eye ray and gathered surface
@@ -47,7 +50,7 @@ struct RenderReport {
   double seconds = 0;
   uint64_t rays = 0;
   /// What the picture lost, as fractions of its mean: negative lobe values clamped to zero, and light
-  /// behind more mirrors than max_mirror_depth (estimated from the throughput cut).
+  /// by way of mirrors and glass that was not followed to its end (as if it were as bright as the mean).
   double clamped = 0, cut_off = 0;
   bool complete = true;  ///< false: stopped early
 };
