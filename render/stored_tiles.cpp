@@ -55,15 +55,20 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const Genera
   light.Start(eye_rays.film(), float(tile.x0) - beyond, float(tile.y0) - beyond, float(tile.x1) + beyond,
               float(tile.y1) + beyond);
   const int block = eye_rays.block_side(), pixels = block * block, samples = eye_rays.per_pixel();
+  const float per_sample = 1.0f / float(samples);
+  Rgb shown = Rgb::Zero();
   EyePacket rays;
   PacketHits hits;
   alignas(64) float radiance[3 * kLanes], sum[3 * kLanes];
   for (int y = tile.y0; y < tile.y1; y += block) {
     for (int x = tile.x0; x < tile.x1; x += block) {
       const int columns = std::min(block, tile.x1 - x), rows = std::min(block, tile.y1 - y);
-      uint32_t lanes = 0;  // whose pixels are in the tile
-      for (int i = 0; i < kLanes; ++i) {
-        if (i % pixels % block < columns && i % pixels / block < rows) lanes |= 1u << i;
+      uint32_t lanes = 0xffff;  // whose pixels are in the tile
+      if (columns < block || rows < block) {
+        lanes = 0;
+        for (int i = 0; i < kLanes; ++i) {
+          if (i % pixels % block < columns && i % pixels / block < rows) lanes |= 1u << i;
+        }
       }
       std::fill_n(sum, 3 * kLanes, 0.0f);
       for (int k = 0; k < eye_rays.packets_per_block(); ++k) {
@@ -77,16 +82,23 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const Genera
         }
         for (int i = 0; i < 3 * kLanes; ++i) sum[i] += radiance[i];
       }
-      for (int p = 0; p < pixels; ++p) {
-        if ((lanes >> p & 1) == 0) continue;
-        Rgb pixel = Rgb::Zero();
-        for (int i = p; i < kLanes; i += pixels) pixel += Rgb(sum[i], sum[kLanes + i], sum[2 * kLanes + i]);
-        image->at(x + p % block, y + p / block) = pixel / float(samples);
-        sums->shown += pixel.sum();
+      for (int half = kLanes / 2; half >= pixels; half /= 2) {
+        for (int c = 0; c < 3; ++c) {
+          for (int i = 0; i < half; ++i) sum[c * kLanes + i] += sum[c * kLanes + half + i];
+        }
+      }
+      for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+          const float* of_pixel = sum + row * block + column;
+          const Rgb pixel(of_pixel[0], of_pixel[kLanes], of_pixel[2 * kLanes]);
+          image->at(x + column, y + row) = pixel * per_sample;
+          shown += pixel;
+        }
       }
       sums->rays += uint64_t(columns) * rows * samples;
     }
   }
+  sums->shown += shown.cast<double>().sum();
   sums->clamped += light.TakeClamped();
 }
 
