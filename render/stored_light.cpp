@@ -16,6 +16,8 @@ namespace {
 constexpr uint32_t kPlaces = 256, kSlots = 1024;  // powers of two; about what a tile meets
 constexpr int kMaxGrid = FilmGrid::kMaxPoints;
 
+constexpr int kColumn = 4, kColumns = 16;
+
 enum class Kind : uint32_t {
   kUnhandled,
   kLinear,  // radiance is linear in u and v
@@ -30,8 +32,8 @@ struct alignas(64) Place {
   float w0[3] = {0, 0, 0}, w1[3] = {0, 0, 0};  // factors of u, v, 1; w2 is the rest
   float linear[3][3] = {};                     // by channel, likewise
   float emission[3] = {0, 0, 0};
-  uint32_t node[3];              // visible ones
-  uint8_t corner[3], count = 0;  // their corners
+  uint32_t node[3] = {};              // visible ones
+  uint8_t corner[3] = {}, count = 0;  // their corners
 };
 
 // A node's radiance in the points of the tile's grid.
@@ -83,7 +85,10 @@ struct StoredLight::State {
   LobeLanes lanes;
   FilmGrid grid;
   std::vector<Place> places{kPlaces};
-  const Place* last = &places[0];
+  const Place none;
+  const Place* last = &none;
+  // Found last in a column of film kColumn pixels wide: the place above is looked at before one is looked up.
+  const Place* above[kColumns];
   std::vector<Values> values{kSlots};
   std::vector<uint64_t> tags = std::vector<uint64_t>(kSlots, 0);  // tile and node
   std::vector<uint8_t> points = std::vector<uint8_t>(kSlots, 0);  // along an axis; 0: no grid serves
@@ -93,7 +98,16 @@ struct StoredLight::State {
   Counts counts;
 
   State(const Solution& s, const ElementLocator& l, const std::vector<uint8_t>& h)
-      : solution(s), locator(l), handled(h), lanes(MaxDegree(s.total)) {}
+      : solution(s), locator(l), handled(h), lanes(MaxDegree(s.total)) {
+    Forget();
+  }
+
+  // A hit on the edge of two elements belongs to the one looked at first: that must not be one of another
+  // tile, or bits would depend on which thread had which tile.
+  void Forget() {
+    last = &none;
+    std::fill(above, above + kColumns, &none);
+  }
 
   static int MaxDegree(const NodeLobes& lobes) {
     int l_max = 0;
@@ -227,8 +241,13 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
     uint32_t taken = inside();
     if (taken == 0) {
       const int first = std::countr_zero(left);
-      place = &state.Find(hits.face_side[first], hits.u[first], hits.v[first]);
-      taken = inside() | 1u << first;  // that one may lie a rounding error outside
+      const Place*& above = state.above[uint32_t(int(rays.film_x[first])) / kColumn % kColumns];
+      place = above;
+      taken = inside();
+      if ((taken >> first & 1) == 0) {
+        place = above = &state.Find(hits.face_side[first], hits.u[first], hits.v[first]);
+        taken = inside() | 1u << first;  // that one may lie a rounding error outside
+      }
     }
     left &= ~taken;
     if (place->kind == Kind::kUnhandled) {
@@ -301,6 +320,7 @@ StoredLight::StoredLight(StoredLight&&) noexcept = default;
 
 void StoredLight::Start(const CameraView::Film& film, float x0, float y0, float x1, float y1) {
   ++state_->tile;
+  state_->Forget();
   state_->grid.Start(film, x0, y0, x1, y1);
   for (int l = 0; l <= state_->lanes.l_max(); ++l) {
     state_->points_of_degree[l] = FilmGrid::Points(l, state_->grid.rho());

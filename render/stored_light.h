@@ -25,7 +25,8 @@ namespace lobe {
 /// it.
 ///
 /// A StoredLight is one thread's: it keeps the last elements and nodes it met, about a quarter of a megabyte
-/// whatever the scene; lobes are read where they are stored. Results do not depend on what it met before.
+/// whatever the scene; lobes are read where they are stored. Results do not depend on what it met before
+/// Start.
 class StoredLight {
  public:
   /// `handled[2 * material + side]`: 1 if light of that side of the material is read here. References are

@@ -56,20 +56,27 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const PixelR
   light.Start(eye_rays.film(), float(tile.x0) - beyond, float(tile.y0) - beyond, float(tile.x1) + beyond,
               float(tile.y1) + beyond);
   const int block = eye_rays.block_side(), pixels = block * block, samples = eye_rays.per_pixel();
+  const float per_sample = 1.0f / float(samples);
+  Rgb shown = Rgb::Zero();
   EyePacket rays;
   PacketHits hits;
   alignas(64) float radiance[3 * kLanes], sum[3 * kLanes];
+  const PixelRect part{std::max(tile.x0, window.x0), std::max(tile.y0, window.y0),
+                       std::min(tile.x1, window.x1), std::min(tile.y1, window.y1)};
   for (int y = tile.y0; y < tile.y1; y += block) {
     for (int x = tile.x0; x < tile.x1; x += block) {
-      uint32_t lanes = 0;  // whose pixels are in the picture
-      int inside = 0;
-      for (int i = 0; i < kLanes; ++i) {
-        const int px = x + i % pixels % block, py = y + i % pixels / block;
-        if (px >= tile.x1 || py >= tile.y1 || !window.Contains(px, py)) continue;
-        lanes |= 1u << i;
-        inside += i < pixels;
+      // Columns and rows of the block that are to be shown.
+      const int left = std::max(part.x0 - x, 0), right = std::min(part.x1 - x, block);
+      const int top = std::max(part.y0 - y, 0), bottom = std::min(part.y1 - y, block);
+      if (left >= right || top >= bottom) continue;
+      uint32_t lanes = 0xffff;
+      if (left > 0 || right < block || top > 0 || bottom < block) {
+        lanes = 0;
+        for (int i = 0; i < kLanes; ++i) {
+          const int column = i % pixels % block, row = i % pixels / block;
+          if (column >= left && column < right && row >= top && row < bottom) lanes |= 1u << i;
+        }
       }
-      if (lanes == 0) continue;
       std::fill_n(sum, 3 * kLanes, 0.0f);
       for (int k = 0; k < eye_rays.packets_per_block(); ++k) {
         eye_rays.Packet(x, y, k, &rays);
@@ -84,16 +91,23 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const PixelR
         }
         for (int i = 0; i < 3 * kLanes; ++i) sum[i] += radiance[i];
       }
-      for (int p = 0; p < pixels; ++p) {
-        if ((lanes >> p & 1) == 0) continue;
-        Rgb pixel = Rgb::Zero();
-        for (int i = p; i < kLanes; i += pixels) pixel += Rgb(sum[i], sum[kLanes + i], sum[2 * kLanes + i]);
-        image->at(x + p % block - window.x0, y + p / block - window.y0) = pixel / float(samples);
-        sums->shown += pixel.sum();
+      for (int half = kLanes / 2; half >= pixels; half /= 2) {
+        for (int c = 0; c < 3; ++c) {
+          for (int i = 0; i < half; ++i) sum[c * kLanes + i] += sum[c * kLanes + half + i];
+        }
       }
-      sums->rays += uint64_t(inside) * samples;
+      for (int row = top; row < bottom; ++row) {
+        for (int column = left; column < right; ++column) {
+          const float* of_pixel = sum + row * block + column;
+          const Rgb pixel(of_pixel[0], of_pixel[kLanes], of_pixel[2 * kLanes]);
+          image->at(x + column - window.x0, y + row - window.y0) = pixel * per_sample;
+          shown += pixel;
+        }
+      }
+      sums->rays += uint64_t(right - left) * (bottom - top) * samples;
     }
   }
+  sums->shown += shown.cast<double>().sum();
   sums->clamped += light.TakeClamped();
 }
 

@@ -95,6 +95,46 @@ TEST(RayTracerTest, FansHitWhatSingleRaysHitButForTies) {
   }
 }
 
+// With twins (both windings of a sheet) the hits are told apart one by one, without them in lanes.
+TEST(RayTracerTest, PacketsHitWhatFansHit) {
+  Random random;
+  SceneBuilder sheets;
+  const uint32_t grey = sheets.AddLambert(Rgb::Constant(0.5f));
+  sheets.AddQuad({-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}, grey);
+  sheets.AddQuad({-9, -9, -1}, {-9, 9, -1}, {9, 9, -1}, {9, -9, -1}, grey);
+  const Scene soup = Soup(300, &random), twins = sheets.Build();
+  for (const Scene* scene : {&soup, &twins}) {
+    const RayTracer tracer(*scene);
+    int hits = 0, backs = 0, misses = 0;
+    for (int packet = 0; packet < 100; ++packet) {
+      const Vec3 origin = random.Gauss();
+      alignas(64) float x[kLanes], y[kLanes], z[kLanes];
+      for (int i = 0; i < kLanes; ++i) {
+        const Vec3 d = random.Direction();
+        x[i] = d.x();
+        y[i] = d.y();
+        z[i] = d.z();
+      }
+      RayHit fanned[kLanes];
+      PacketHits got;
+      tracer.IntersectFan(origin, x, y, z, fanned);
+      tracer.IntersectPacket(origin, x, y, z, &got);
+      for (int i = 0; i < kLanes; ++i) {
+        ASSERT_EQ(got.at(i).hit(), fanned[i].hit());
+        hits += fanned[i].hit();
+        misses += !fanned[i].hit();
+        backs += fanned[i].hit() && fanned[i].side == Side::kBack;
+        if (fanned[i].hit()) {
+          EXPECT_TRUE(Same(got.at(i), fanned[i]));
+        }
+      }
+    }
+    EXPECT_GT(hits, 300);
+    EXPECT_GT(misses, 100);
+    EXPECT_EQ(backs > 100, scene == &soup);
+  }
+}
+
 TEST(RayTracerTest, AgreesWithBruteForce) {
   Random random;
   const Scene scene = Soup(60, &random);
