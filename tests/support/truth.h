@@ -22,6 +22,7 @@ inline std::vector<Comparison> CompareWithTruth(const Solution& solution, const 
     RenderOptions view;
     view.width = a.width;
     view.height = a.height;
+    view.mode = RenderMode::kStored;  // what a solve is judged by; the default gathers
     const Image picture = renderer.Render(CameraView(camera, a.width, a.height), view, nullptr);
     out.push_back(Compare(picture, a, &b, &mask));
   }
