@@ -11,6 +11,25 @@
 #include "scene/element_locator.h"
 
 namespace lobe {
+namespace {
+
+// Sums up the lanes that are for the same pixel into the first `pixels`, by channel. Loops of known length,
+// so that they become a handful of instructions.
+template <int pixels>
+void Fold(float* sum) {
+  for (int half = kLanes / 2; half >= pixels; half /= 2) {
+    for (int c = 0; c < 3; ++c) {
+      for (int i = 0; i < half; ++i) sum[c * kLanes + i] += sum[c * kLanes + half + i];
+    }
+  }
+}
+
+void Fold(int pixels, float* sum) {
+  if (pixels == 1) Fold<1>(sum);
+  if (pixels == 4) Fold<4>(sum);  // where there are 16, every lane is a pixel's
+}
+
+}  // namespace
 
 struct StoredTiles::Impl {
   const RayTracer& tracer;
@@ -77,25 +96,23 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const PixelR
           if (column >= left && column < right && row >= top && row < bottom) lanes |= 1u << i;
         }
       }
-      std::fill_n(sum, 3 * kLanes, 0.0f);
       for (int k = 0; k < eye_rays.packets_per_block(); ++k) {
         eye_rays.Packet(x, y, k, &rays);
         impl_->tracer.IntersectPacket(eye_rays.eye(), rays.x, rays.y, rays.z, &hits);
-        uint32_t unhandled = light.Read(rays, hits, lanes, radiance);
+        float* into = k == 0 ? sum : radiance;
+        uint32_t unhandled = light.Read(rays, hits, lanes, into);
         for (; unhandled != 0; unhandled &= unhandled - 1) {
           const int lane = std::countr_zero(unhandled);
           const int p = lane % pixels;
           const Rgb one = general(rays.ray(eye_rays.eye(), lane), hits.at(lane), x + p % block, y + p / block,
                                   k * (kLanes / pixels) + lane / pixels);
-          for (int c = 0; c < 3; ++c) radiance[c * kLanes + lane] = one[c];
+          for (int c = 0; c < 3; ++c) into[c * kLanes + lane] = one[c];
         }
-        for (int i = 0; i < 3 * kLanes; ++i) sum[i] += radiance[i];
-      }
-      for (int half = kLanes / 2; half >= pixels; half /= 2) {
-        for (int c = 0; c < 3; ++c) {
-          for (int i = 0; i < half; ++i) sum[c * kLanes + i] += sum[c * kLanes + half + i];
+        if (k > 0) {
+          for (int i = 0; i < 3 * kLanes; ++i) sum[i] += radiance[i];
         }
       }
+      Fold(pixels, sum);
       for (int row = top; row < bottom; ++row) {
         for (int column = left; column < right; ++column) {
           const float* of_pixel = sum + row * block + column;
