@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace lobe {
 namespace {
@@ -59,14 +60,15 @@ std::string Number(double value) {
 }
 
 // Twelve corners are round enough at this size, and files stay small.
-std::vector<Point> Disc(const Point& centre, double radius) {
+void DrawMark(Drawing* drawing, const Point& centre, double radius, const Drawing::Colour& colour) {
   constexpr int kCorners = 12;
-  std::vector<Point> out;
+  Drawing::Fill disc;
+  disc.colour = colour;
   for (int i = 0; i < kCorners; ++i) {
     const double t = 2 * std::numbers::pi * i / kCorners;
-    out.push_back(centre + radius * Point(std::cos(t), std::sin(t)));
+    disc.points.push_back(centre + radius * Point(std::cos(t), std::sin(t)));
   }
-  return out;
+  drawing->Add(std::move(disc));
 }
 
 void DrawGrid(Drawing* drawing, const PlotPanel& panel, const Point& corner, const Axis& x, const Axis& y) {
@@ -97,7 +99,7 @@ void DrawSeries(Drawing* drawing, const PlotSeries& s, const Point& corner, cons
     line.push_back(corner + Point(kPanelWidth * x.At(p.x()), kPanelHeight * (1 - y.At(p.y()))));
   }
   if (s.joined && line.size() > 1) drawing->Add(Drawing::Line{line, s.colour, 1.8, s.dash});
-  for (const Point& p : line) drawing->Add(Drawing::Fill{Disc(p, s.joined ? 3.4 : 2.4), s.colour});
+  for (const Point& p : line) DrawMark(drawing, p, s.joined ? 3.4 : 2.4, s.colour);
 }
 
 void DrawLegend(Drawing* drawing, const std::vector<PlotSeries>& series, const Point& corner) {
@@ -105,7 +107,7 @@ void DrawLegend(Drawing* drawing, const std::vector<PlotSeries>& series, const P
   for (const PlotSeries& s : series) {
     if (s.name.empty()) continue;
     if (s.joined) drawing->Add(Drawing::Line{{at, at + Point(30, 0)}, s.colour, 1.8, s.dash});
-    drawing->Add(Drawing::Fill{Disc(at + Point(15, 0), s.joined ? 3.4 : 2.4), s.colour});
+    DrawMark(drawing, at + Point(15, 0), s.joined ? 3.4 : 2.4, s.colour);
     drawing->Add(Drawing::Text{at + Point(38, 4), s.name, 12, kInk});
     at.y() += 21;
   }

@@ -299,7 +299,7 @@ PathCost CostOfPaths(const std::vector<Measurement>& paths, size_t view, double 
 
 void Ratio() {
   std::printf(
-      "Equal error: path tracer's seconds between measured points (4, 16, 64, 256 samples a pixel) straight "
+      "Equal error: path tracer's seconds between measured points (16, 64 samples a pixel) straight "
       "in "
       "both logarithms;\n~ beyond them by its law, error as 1 / sqrt(samples).\n\n"
       "| view | mode | pixel error %% | a further view, CPU s | path tracer at that error, CPU s | ratio "
@@ -307,7 +307,7 @@ void Ratio() {
   for (const char* name : kScenes) {
     const Subject subject(name);
     const Solved solved(subject, kDefaultEdge);
-    const std::vector<Measurement> paths = PathTraced(subject, {4, 16, 64, 256});
+    const std::vector<Measurement> paths = PathTraced(subject, {16, 64});
     const RenderOptions defaults;
     for (const ModeName& mode : kModes) {
       if (mode.mode != RenderMode::kStored && mode.mode != RenderMode::kAuto) continue;
