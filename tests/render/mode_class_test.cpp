@@ -239,5 +239,29 @@ TEST(ModeClassTest, LDRE_ADiffuseFloorSeenThroughASlab) {
   ExpectModesAsTraced(b, kFloor, "LDRE", kEveryMode, 0.03);
 }
 
+// Bases under ideal coats: samples that draw the coat's own reflection leave that to the ray which follows
+// it.
+TEST(ModeClassTest, LDE_AndLDSE_OverAVarnishedFloor) {
+  MetallicRoughness varnish = Metal(0, kWarm);
+  varnish.metallic = 0;
+  varnish.ior = 2.5f;  // a coat that matters: 18 %
+  Stage b;
+  b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("varnish", varnish));
+  b.Down(-0.3f, 0.3f, -0.3f, 0.3f, 1.2f, b.lamp);
+  // Seen in the coat, and lit by the same lamp.
+  b.AddQuad({-1, 0, 2}, {-1, 0, -2}, {-1, 1, -2}, {-1, 1, 2}, b.AddLambert(kWarm));
+  ExpectModesAsTraced(b, kFloor, "varnish", kEveryMode, 0.015);
+}
+
+TEST(ModeClassTest, LDE_AndLPDE_ByAPaneWithABase) {
+  MetallicRoughness half = Pane(1.5f, Rgb(0.9f, 0.8f, 0.7f));
+  half.transmission = 0.5f;
+  Stage b;
+  b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("half", half, Rgb::Zero(), /*double_sided=*/true));
+  b.Up(-1.5f, 1.5f, -1.5f, 1.5f, -0.3f, b.AddLambert(kWarm));
+  b.Down(-0.3f, 0.3f, -0.3f, 0.3f, 1.2f, b.lamp);
+  ExpectModesAsTraced(b, {{0.9f, 0.9f, 0.6f}, {0, 0, 0}}, "half a pane", kEveryMode, 0.02);
+}
+
 }  // namespace
 }  // namespace lobe
