@@ -130,6 +130,28 @@ TEST_F(CommandsTest, InfoOfASolutionRepeatsWhatSolveSaid) {
   }
 }
 
+TEST_F(CommandsTest, RenderTracesPathsOfAScene) {
+  const std::string scene = ScenePath("cornell_diffuse");
+  RunForJson({"render", scene, "--mode", "path", "-o", File("p.exr"), "--size", "24x24", "--spp", "64"});
+  RunForJson({"render", Solved("cornell_diffuse"), "-o", File("s.exr"), "--size", "24x24"});
+  const json c = RunForJson({"compare", File("p.exr"), File("s.exr")});
+  EXPECT_NEAR(c["mean"].get<double>() / c["reference_mean"].get<double>(), 1, 0.1);
+}
+
+TEST_F(CommandsTest, RenderWritesLayersThatSumToTheColour) {
+  RunForJson({"render", Solved("cornell_diffuse"), "-o", File("l.exr"), "--size", "24x24", "--layers", "all"});
+  const Image colour = ReadExr(File("l.exr"));
+  Image sum(colour.width, colour.height);
+  for (const char* name : {"direct", "indirect", "specular"}) {
+    const Image layer = ReadExrLayer(File("l.exr"), name).image;
+    for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += layer.pixels[i];
+  }
+  for (size_t i = 0; i < sum.pixels.size(); ++i) {
+    EXPECT_LT((sum.pixels[i] - colour.pixels[i]).abs().maxCoeff(), 1e-4f * (1 + colour.pixels[i].maxCoeff()));
+  }
+  EXPECT_EQ(ListExrLayers(File("l.exr")).size(), 8u);
+}
+
 TEST_F(CommandsTest, RenderWritesBothKindsOfPicture) {
   const json r = RunForJson({"render", Solved("cornell_diffuse"), "--camera", "view1", "-o", File("a.exr"),
                              "-o", File("a.png"), "--size", "40x30", "--spp", "4"});
@@ -145,7 +167,7 @@ TEST_F(CommandsTest, RenderWritesBothKindsOfPicture) {
   const ExrAttributes attributes = ReadExrAttributes(File("a.exr"));
   EXPECT_EQ(std::get<std::string>(attributes.at("camera")), "view1");
   EXPECT_EQ(std::get<int>(attributes.at("samplesPerPixel")), 4);
-  EXPECT_EQ(std::get<std::string>(attributes.at("lobeMode")), "stored");
+  EXPECT_EQ(std::get<std::string>(attributes.at("lobeMode")), "auto");
   EXPECT_EQ(std::get<std::vector<float>>(attributes.at("worldToCamera")).size(), 16u);
   EXPECT_EQ(std::get<std::vector<float>>(attributes.at("worldToNDC")).size(), 16u);
   EXPECT_FALSE(std::get<std::string>(attributes.at("lobeVersion")).empty());
