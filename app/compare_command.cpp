@@ -86,10 +86,22 @@ Mask Part(const Mask& mask, const PixelRect& rect) {
 }
 
 /// A crop is compared with its part of full references and masks.
-void CutToCrop(const std::string& path, Pictures* p) {
+void CutToCrop(const CompareFlags& flags, Pictures* p) {
+  const std::string& path = flags.picture;
   const ExrWindows windows = ReadExrWindows(path);
   const std::optional<PixelRect> rect = PlaceOfCrop(windows);
   if (!rect) return;
+  const auto require_same_place = [&](const std::string& other) {
+    const std::optional<PixelRect> theirs = PlaceOfCrop(ReadExrWindows(other));
+    if (!theirs || *theirs == *rect) return;
+    const auto corner = [](const PixelRect& r) {
+      return "(" + std::to_string(r.x0) + ", " + std::to_string(r.y0) + ")";
+    };
+    throw InputError(other + ": is a crop that begins at pixel " + corner(*theirs) + ", and " + path +
+                     " one that begins at " + corner(*rect) + "; the same crop is expected");
+  };
+  require_same_place(flags.reference);
+  if (flags.reference2) require_same_place(*flags.reference2);
   const auto cut = [&](auto* whole) {
     if (whole->width == windows.display.width() && whole->height == windows.display.height()) {
       *whole = Part(*whole, *rect);
@@ -112,7 +124,7 @@ Pictures Read(const CompareFlags& flags) {
   p.reference = read(flags.reference);
   if (flags.reference2) p.reference2 = read(*flags.reference2);
   if (flags.mask) p.mask = ReadPngMask(*flags.mask);
-  CutToCrop(flags.picture, &p);
+  CutToCrop(flags, &p);
   return p;
 }
 

@@ -49,7 +49,12 @@ void Validate(RenderFlags* flags) {
     }
     flags->options.mode = mode->mode;
   }
+  if (flags->options.gather_base && flags->mode != "gather") {
+    throw UsageError("--gather-base belongs to --mode gather, not " + flags->mode);
+  }
   if (flags->layers) {
+    if (!flags->outputs.wants_exr())
+      throw UsageError("--layers: no output is an .exr file, which can hold them");
     if (flags->path_traced) throw UsageError("--layers: mode path has no layers");
     std::string wrong;
     const auto layers = ParseLayers(*flags->layers, &wrong);
@@ -75,7 +80,7 @@ ExrAttributes Attributes(const RenderFlags& flags, const RenderView& view, const
                            {"lobeFilter", flags.filter},
                            {"lobeSolution", flags.solution},
                            {"lobeComplete", report.complete ? 1 : 0},
-                           {"samplesPerPixel", flags.options.samples_per_pixel},
+                           {"samplesPerPixel", report.samples_per_pixel},
                            {"renderSeconds", float(report.seconds)}};
   if (view.frame) {
     attributes["lobeFrame"] = *view.frame;
@@ -88,7 +93,7 @@ ExrAttributes Attributes(const RenderFlags& flags, const RenderView& view, const
 nlohmann::json ViewJson(const RenderFlags& flags, const RenderView& view, const ViewFiles& files,
                         const RenderReport& report) {
   nlohmann::json json = {{"outputs", files.pictures},  {"width", view.size.width},
-                         {"height", view.size.height}, {"samples_per_pixel", flags.options.samples_per_pixel},
+                         {"height", view.size.height}, {"samples_per_pixel", report.samples_per_pixel},
                          {"mode", flags.mode},         {"filter", flags.filter},
                          {"seconds", report.seconds},  {"rays", report.rays},
                          {"clamped", report.clamped},  {"cut_off", report.cut_off},
@@ -108,8 +113,8 @@ nlohmann::json ViewJson(const RenderFlags& flags, const RenderView& view, const 
 void SayFigures(const RenderOptions& options, const RenderReport& report, const Console& console) {
   const PixelRect window = options.Window();
   console.Say(std::to_string(window.width()) + " x " + std::to_string(window.height()) + " pixels, " +
-              Format("%.3g million eye rays and mirrors", double(report.rays) * 1e-6) +
-              Format(", %.2f s", report.seconds) + Format("; clamped %.2g %%", 100 * report.clamped) +
+              Format("%.3g million rays", double(report.rays) * 1e-6) + Format(", %.2f s", report.seconds) +
+              Format("; clamped %.2g %%", 100 * report.clamped) +
               Format(", by mirrors and glass not followed %.2g %%", 100 * report.cut_off));
 }
 

@@ -1,5 +1,7 @@
 #include "app/render_outputs.h"
 
+#include <algorithm>
+
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -154,6 +156,11 @@ std::vector<ViewFiles> RenderOutputs::FilesOf(const std::vector<RenderView>& vie
     files.push_back(of_view);
   }
   return files;
+}
+
+bool RenderOutputs::wants_exr() const {
+  return std::any_of(pictures_.begin(), pictures_.end(),
+                     [](const std::string& picture) { return Extension(picture) == ".exr"; });
 }
 
 void RenderOutputs::Write(const LayeredImage& image, const ExrAttributes& attributes, const RenderView& view,

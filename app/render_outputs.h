@@ -31,6 +31,7 @@ class RenderOutputs {
   /// The files of every view, none of them twice. Throws InputError (cameras of one name, not writable).
   std::vector<ViewFiles> FilesOf(const std::vector<RenderView>& views, const std::string& scene) const;
 
+  bool wants_exr() const;  ///< is any picture an .exr?
   bool wants_mask() const { return mask_.has_value(); }
   /// Writes the pictures of a view and says so.
   void Write(const LayeredImage& image, const ExrAttributes& attributes, const RenderView& view,

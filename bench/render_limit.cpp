@@ -13,9 +13,9 @@
 #include "bench/bare_embree.h"
 #include "bench/timing.h"
 #include "render/eye_rays.h"
+#include "render/packet_light.h"
 #include "render/renderer.h"
-#include "render/stored_light.h"
-#include "render/stored_tiles.h"
+#include "render/tile_renderer.h"
 #include "scene/element_locator.h"
 #include "scene/gltf_scene.h"
 #include "solver/solver.h"
@@ -46,13 +46,13 @@ void ForEachPacket(const EyeRays& eye_rays, int tile_side, const Start& start, c
 // CPU seconds of the stages so far: making rays, tracing them too, reading them too.
 struct Stages {
   double make, trace, read;
-  StoredLight::Counts counts;
+  PacketLight::Counts counts;
 };
 
 Stages Measure(const EyeRays& eye_rays, int tile_side, const RayTracer& tracer, const Solution& solution,
                const ElementLocator& locator) {
   const std::vector<uint8_t> handled(2 * solution.scene.materials.size(), 1);
-  StoredLight light(solution, locator, handled);
+  PacketLight light(solution, locator, handled);
   const auto nothing = [](const Tile&) {};
   EyePacket rays;
   PacketHits hits;
@@ -97,7 +97,7 @@ void Print(const std::string& name, int runs) {
     const CameraView view(camera, kSize, kSize);
     const EyeRays eye_rays(view, options);
     const int tile_side =
-        StoredTiles(solution, tracer, locator, std::vector<uint8_t>(2 * solution.scene.materials.size(), 1))
+        TileRenderer(solution, tracer, locator, std::vector<uint8_t>(2 * solution.scene.materials.size(), 1))
             .TileSide(eye_rays, kSize, kSize);
     std::vector<Ray> rays;
     EyePacket packet;

@@ -14,7 +14,7 @@ constexpr int kGrowth = 2;
 bool Emits(const Scene& scene, const RayHit& hit) {
   if (!hit.hit()) return false;
   const Material& material = scene.materials[scene.faces[hit.face].material];
-  return material.emits() && (hit.side == Side::kFront || material.double_sided);
+  return hit.side == Side::kFront ? material.emits() : material.emits_behind();
 }
 
 }  // namespace

@@ -186,13 +186,13 @@ bool ForEachTile(const RenderOptions& options, int side, const std::function<voi
     if (stop.load(std::memory_order_relaxed)) return;
     const int x0 = (grid.x0 + index % grid.width()) * side, y0 = (grid.y0 + index / grid.width()) * side;
     render({index, x0, y0, std::min(x0 + side, options.width), std::min(y0 + side, options.height)});
-    const int finished = ++done;
+    ++done;
     if (progress) {
       const std::unique_lock lock(progress_mutex, std::try_to_lock);
-      if (lock.owns_lock() && !progress(double(finished) / tiles)) stop = true;
+      if (lock.owns_lock() && !progress(double(done.load()) / tiles)) stop = true;
     }
   });
-  return !stop;
+  return done == tiles;
 }
 
 }  // namespace lobe

@@ -20,7 +20,10 @@ struct EyeShader::Way {
   Rgb* indirect;  // the rest
   uint64_t key;
   int mirrors = 0;
+  int panes = 0;            // of `mirrors` it does not count, since lamps are aimed at through them
+  float samples = 1;        // ways among which the throughput was shared out
   bool gathered = false;    // by a diffuse or glossy surface: lobes are read wherever the way ends
+  bool lamps_only = false;  // straight from there: all else was read from lobes
   float direction_pdf = 0;  // with which the gathering surface found this direction; 0: lamps not aimed at
   float travelled = 0;      // since then, through panes
   const Lamps::Choice* lamps = nullptr;  // of that surface
@@ -88,12 +91,16 @@ void EyeShader::Follow(const Ray& ray, const RayHit& hit, Way way, Task& task) c
     if (!next_way.open()) return;
     Way next = way;
     next.throughput *= next_way.weight;
-    if (way.mirrors == task.options.max_mirror_depth ||
-        next.throughput.maxCoeff() < task.options.specular_cutoff) {
+    // Shadow rays pass panes to the end, so what shares with them must, too.
+    const bool shared = straight && way.direction_pdf > 0;
+    const bool cut = shared ? way.panes == SpecularSurfaces::kMostPanes
+                            : way.mirrors == task.options.max_mirror_depth ||
+                                  next.throughput.maxCoeff() * way.samples < task.options.specular_cutoff;
+    if (cut) {
       task.work.cut_off += next.throughput.sum();
       return;
     }
-    ++next.mirrors;
+    ++(shared ? next.panes : next.mirrors);
     next.key = Mix(way.key, &next_way == &ways.reflection ? kReflected : kTransmitted);
     next.media = media;
     // Where a lamp was aimed at through panes, the light found this way has to share with that.
@@ -109,8 +116,8 @@ void EyeShader::Follow(const Ray& ray, const RayHit& hit, Way way, Task& task) c
     ++task.work.rays;
     Follow(on, paths_.tracer().Intersect(on), next, task);
   };
-  go_on(ways.reflection, way.media, false);
-  go_on(ways.transmission, ways.beyond, ways.straight);
+  if (!way.lamps_only) go_on(ways.reflection, way.media, false);
+  if (!way.lamps_only || ways.straight) go_on(ways.transmission, ways.beyond, ways.straight);
 }
 
 // What leaves the surface itself: emission, and light that it scatters.
@@ -119,13 +126,14 @@ void EyeShader::Surface(const Ray& ray, const RayHit& hit, const Way& way, Task&
   const PathScene::Surface& surface = paths_.surface(hit.face);
   const Vec3 wo = -ray.direction;
   float* basis = task.work.basis.data();
-  if (surface.emits) {
+  if (paths_.Emits(hit)) {
     const float weight =
         way.direction_pdf > 0
             ? PowerWeight(way.direction_pdf, paths_.LightPdf(hit.face, wo, way.travelled, way.lamps))
             : 1;
     *way.direct += way.throughput * (weight * surface.emission);
   }
+  if (way.lamps_only) return;
 
   const Mesh::Location where = stored_.Locate(hit);
   const auto sample = [&](const ReflectanceSampler& sampler, int samples, bool gather) {
@@ -171,6 +179,7 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
   const SobolPoints directions(Mix(way.key, 1)), choices(Mix(way.key, 2)), places(Mix(way.key, 3));
   Way next = way;
   next.throughput /= float(samples);
+  next.samples *= float(samples);
   next.gathered = true;
   next.travelled = 0;
   const Lamps::Choice lamps = paths_.ChooseLamps(vertex, sampler);
@@ -194,24 +203,12 @@ void EyeShader::Sample(const PathScene::Vertex& vertex, const ReflectanceSampler
     // Ideal reflections are followed by Follow.
     if (!scattered.alive || scattered.pdf == 0) continue;
     ++task.work.rays;
-    if (gather) {
-      Way found = next;
-      found.throughput *= scattered.weight;
-      found.key = Mix(way.key, index);
-      found.direction_pdf = paths_.has_lamps() ? scattered.pdf : 0;
-      Follow(scattered.ray, tracer.Intersect(scattered.ray), found, task);
-    } else {
-      Ray last = scattered.ray;
-      Rgb passed = Rgb::Constant(1);
-      const RayHit hit = paths_.specular().IntersectPastPanes(tracer, &last, &passed);
-      if (!hit.hit() || !paths_.Emits(hit)) continue;
-      const float distance = (last.origin - scattered.ray.origin).norm() + hit.t;
-      passed *= paths_.specular().Transmittance(way.media.top(), distance);
-      const float weight =
-          PowerWeight(scattered.pdf, paths_.LightPdf(hit.face, -scattered.ray.direction, distance, &lamps));
-      *way.direct +=
-          next.throughput * scattered.weight * passed * (weight * paths_.surface(hit.face).emission);
-    }
+    Way found = next;
+    found.throughput *= scattered.weight;
+    found.key = Mix(way.key, index);
+    found.direction_pdf = paths_.has_lamps() ? scattered.pdf : 0;
+    found.lamps_only = !gather;
+    Follow(scattered.ray, tracer.Intersect(scattered.ray), found, task);
   }
 }
 

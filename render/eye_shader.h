@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/lobe_lookup.h"
 #include "render/path_scene.h"
 #include "render/renderer.h"
-#include "render/stored_radiance.h"
 #include "solver/hash.h"
 
 namespace lobe {
@@ -60,7 +60,7 @@ class EyeShader {
   Reading ReadingOf(uint32_t material, const RenderOptions& options) const;
 
   const PathScene& paths() const { return paths_; }
-  const StoredRadiance& stored() const { return stored_; }
+  const LobeLookup& stored() const { return stored_; }
 
  private:
   struct Way;
@@ -74,7 +74,7 @@ class EyeShader {
 
   const Solution& solution_;
   PathScene paths_;
-  StoredRadiance stored_;
+  LobeLookup stored_;
   std::vector<ReflectanceSampler> gloss_;  // by material
 };
 

@@ -19,7 +19,7 @@ inline constexpr double kFlipMinPixelsPerDegree = 5, kFlipMaxPixelsPerDegree = 1
 /// Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator for
 /// Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2) (HPG 2020); names in flip.cpp are
 /// the paper's. Time grows with pixels x pixels_per_degree. Throws std::invalid_argument when sizes
-/// differ or pixels_per_degree is not within the range below.
+/// differ or pixels_per_degree is not within the range above.
 std::vector<float> FlipMap(const Image& a, const Image& b, double pixels_per_degree = kFlipPixelsPerDegree);
 
 }  // namespace lobe

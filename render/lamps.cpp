@@ -19,11 +19,20 @@ Lamps::Lamps(std::vector<Face> faces) : faces_(std::move(faces)) {
   by_power_ = AliasTable(power);
   for (const Face& f : faces_) per_area_.push_back(float(f.power / total / f.area));
 
-  std::map<uint32_t, uint32_t> group_of_key;
-  const bool by_face = faces_.size() <= kMostGroups;
-  for (uint32_t i = 0; i < faces_.size(); ++i) {
-    const uint32_t key = by_face ? i : faces_[i].surface;
-    group_of_.push_back(group_of_key.emplace(key, uint32_t(group_of_key.size())).first->second);
+  // The finest of three partitions that is not too fine.
+  const auto octant = [](const Vec3& n) { return (n.x() < 0) + 2 * (n.y() < 0) + 4 * (n.z() < 0); };
+  std::map<uint64_t, uint32_t> group_of_key;
+  for (int partition = 0; partition < 3; ++partition) {
+    group_of_key.clear();
+    group_of_.clear();
+    for (uint32_t i = 0; i < faces_.size(); ++i) {
+      const uint64_t surface = faces_[i].surface;
+      const uint64_t key = partition == 0   ? i
+                           : partition == 1 ? 8 * surface + uint64_t(octant(faces_[i].normal))
+                                            : surface;
+      group_of_.push_back(group_of_key.emplace(key, uint32_t(group_of_key.size())).first->second);
+    }
+    if (group_of_key.size() <= kMostGroups) break;
   }
   if (group_of_key.size() > kMostGroups) return;
   groups_.resize(group_of_key.size());
@@ -37,11 +46,21 @@ Lamps::Lamps(std::vector<Face> faces) : faces_(std::move(faces)) {
     }
     g.draw = AliasTable(share);
     g.power = float(sum / total);
-    g.flat = g.lamps.size() == 1;
     const Face& first = faces_[g.lamps[0]];
-    if (g.flat) {
+    g.axis = Vec3::Zero();
+    g.one_sided = true;
+    for (const uint32_t i : g.lamps) {
+      g.axis += float(power[i] / sum) * faces_[i].normal;
+      g.one_sided &= faces_[i].emits[0] && !faces_[i].emits[1];
+    }
+    g.axis.normalize();
+    float least = 1;
+    for (const uint32_t i : g.lamps) least = std::min(least, g.axis.dot(faces_[i].normal));
+    g.spread = least > 0 ? std::sqrt(std::max(1 - least * least, 0.0f)) : 1;
+    if (g.lamps.size() == 1) {
       const auto& p = first.corners;
       g.probes = {Vec3((p[0] + p[1] + p[2]) / 3), p[0], p[1], p[2]};
+      g.evaluated = 4;
       g.least_distance2 = first.area;
     } else {
       Eigen::AlignedBox3f box;
@@ -50,6 +69,7 @@ Lamps::Lamps(std::vector<Face> faces) : faces_(std::move(faces)) {
       }
       g.probes.push_back(box.center());
       for (int k = 0; k < 8; ++k) g.probes.push_back(box.corner(Eigen::AlignedBox3f::CornerType(k)));
+      g.evaluated = 1;
       g.least_distance2 = 0.25f * box.diagonal().squaredNorm();
     }
   }
@@ -64,25 +84,21 @@ Lamps::Choice Lamps::ChooseFrom(const Vec3& position, const Frame& frame, const 
   float expected[kMostGroups], sum = 0;
   for (size_t i = 0; i < groups_.size(); ++i) {
     const Group& g = groups_[i];
-    const Face& face = faces_[g.lamps[0]];
     float most = 0;
-    bool seen = false;
-    for (const Vec3& probe : g.probes) {
-      const Vec3 way = probe - position;
+    // All corners of its hull below the horizon: it brings nothing for sure.
+    bool seen = sampler.transmits();
+    for (size_t k = 0; k < g.probes.size() && (k < g.evaluated || !seen); ++k) {
+      const Vec3 way = g.probes[k] - position;
+      seen |= frame.z.dot(way) > 0;
       const float distance2 = way.squaredNorm();
-      if (!(distance2 > 0)) continue;
-      const float distance = std::sqrt(distance2);
-      float geometry = 1 / std::max(distance2, g.least_distance2);
-      if (g.flat) {
-        const float towards = -face.normal.dot(way);
-        if (!face.emits[towards < 0]) continue;
-        geometry *= std::abs(towards) / distance;
-      }
+      if (k >= g.evaluated || !(distance2 > 0)) continue;
+      const float distance = std::sqrt(distance2), towards = -g.axis.dot(way) / distance;
+      // The cosine at the lamp, of the normal that looks here most.
+      const float facing = std::min(g.one_sided ? towards + g.spread : std::abs(towards) + g.spread, 1.0f);
+      if (facing <= 0) continue;
       const Vec3 wi = frame.ToLocal(way / distance);
-      // All corners of its hull below the horizon, or behind: it brings nothing for sure.
-      if (!(wi.z() > 0) && !sampler.transmits()) continue;
-      seen = true;
-      most = std::max(most, sampler.Evaluate(wo_local, wi).f.mean() * std::abs(wi.z()) * geometry);
+      most = std::max(most, sampler.Evaluate(wo_local, wi).f.mean() * std::abs(wi.z()) * facing /
+                                std::max(distance2, g.least_distance2));
     }
     expected[i] = seen ? g.power * most : -1;
     sum += std::max(expected[i], 0.0f);

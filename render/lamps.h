@@ -12,9 +12,9 @@ namespace lobe {
 
 /// The emitting faces of a scene, to be drawn from: by power, or from one vertex by about what each brings.
 ///
-/// From a vertex *groups* are weighed: single faces if there are few, else all of a surface (a bulb of many
-/// triangles is one). Inside a group faces are drawn by power. Scenes of more groups than kMostGroups keep to
-/// power alone.
+/// From a vertex *groups* are weighed: single faces if there are few, else those of a surface that look much
+/// the same way (a bulb of many triangles is eight groups, most of which look away), else all of a surface.
+/// Inside a group faces are drawn by power. Scenes of more groups than kMostGroups keep to power alone.
 class Lamps {
  public:
   static constexpr size_t kMostGroups = 32;
@@ -42,8 +42,8 @@ class Lamps {
     std::array<float, kMostGroups> over_power;  ///< chance over share of power
   };
   /// In proportion to about what each group brings to the vertex if nothing is in the way, by reflectance and
-  /// distance; no group that may bring anything has a chance of 0. Costs about ten evaluations of the
-  /// reflectance a group, at most.
+  /// distance; no group that may bring anything has a chance of 0. Costs at most four evaluations of the
+  /// reflectance a group.
   Choice ChooseFrom(const Vec3& position, const Frame& frame, const Vec3& wo_local,
                     const ReflectanceSampler& sampler) const;
 
@@ -62,7 +62,10 @@ class Lamps {
     float power;               // share
     float least_distance2;     // nearer than its own size a lamp does not get brighter
     std::vector<Vec3> probes;  // middle first, then corners of its hull
-    bool flat;                 // one face: its normal counts
+    size_t evaluated;          // probes whose reflectance is looked at; the others tell about the horizon
+    bool one_sided;            // a single face, or faces that emit on their fronts alone
+    Vec3 axis;                 // mean normal
+    float spread;              // sine of the widest angle of a normal to it; 1: any
   };
 
   std::vector<Face> faces_;

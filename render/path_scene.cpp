@@ -33,8 +33,8 @@ PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
     const float base_mean =
         glass ? (glass->UnderCoat(glass->F0()) * (glass->DiffuseColor() + glass->TransmissionColor())).mean()
               : 0.0f;
-    surfaces_.push_back(
-        {ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.double_sided, kind, base_mean});
+    surfaces_.push_back({ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.emits_behind(),
+                         m.double_sided, kind, base_mean});
   }
 
   // Of faces at one place rays meet only some; lamps no ray can meet must not be sampled either.
@@ -73,7 +73,7 @@ PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
     const float area = scene.Area(face);
     if (surface.emits && area > 0) {
       shade.emits[0] = front_met[f];
-      shade.emits[1] = back_met[f] && surface.double_sided;
+      shade.emits[1] = back_met[f] && surface.emits_behind;
       if (const int sides = shade.emits[0] + shade.emits[1]; sides > 0) {
         shade.lamp = uint32_t(lamps.size());
         lamps.push_back({f,

@@ -26,7 +26,7 @@ class PathScene {
   struct Surface {
     ReflectanceSampler sampler;
     Rgb emission;
-    bool emits, double_sided;
+    bool emits, emits_behind, double_sided;
     SpecularSurfaces::Kind specular;
     float base_mean;  ///< of glass: albedo under the coat, mean of channels
   };
@@ -63,7 +63,7 @@ class PathScene {
   /// Does this hit see emission?
   bool Emits(const RayHit& hit) const {
     const Surface& s = surface(hit.face);
-    return s.emits && (hit.side == Side::kFront || s.double_sided);
+    return hit.side == Side::kFront ? s.emits : s.emits_behind;
   }
   /// Per steradian seen from `distance` away along unit `wo`, with which shadow rays end on this face; 0
   /// if it is no lamp. `choice`: that of the vertex they start from; null: by power.

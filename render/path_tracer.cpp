@@ -99,7 +99,7 @@ Rgb PathTracer::Walk(const RayHit& start, const Vec3& wo_start, bool count_emiss
       walk.throughput *=
           scene_.specular().Transmittance(walk.media, scene_.material(hit.face), hit.side, hit.t);
     }
-    if (surface.emits && (bounce > 0 || count_emission) && (front || surface.double_sided)) {
+    if (scene_.Emits(hit) && (bounce > 0 || count_emission)) {
       float weight = 1;
       if (walk.direction_pdf > 0 && by_light) {
         weight = options_.light_sampling == LightSampling::kBoth

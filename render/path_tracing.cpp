@@ -50,6 +50,7 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
   if (report) {
     *report = {};
     for (const uint64_t rays : traced) report->rays += rays;
+    report->samples_per_pixel = samples;
     report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -11,7 +11,7 @@
 
 #include "render/eye_rays.h"
 #include "render/eye_shader.h"
-#include "render/stored_tiles.h"
+#include "render/tile_renderer.h"
 
 namespace lobe {
 
@@ -27,8 +27,9 @@ std::string RenderOptions::Validate() const {
     out << "samples per pixel " << samples_per_pixel << " is out of range: 1 to 65536 is expected";
   } else if (max_mirror_depth < 0 || max_mirror_depth > 1000) {
     out << "mirror depth " << max_mirror_depth << " is out of range: 0 to 1000 is expected";
-  } else if (!(specular_cutoff >= 0 && specular_cutoff < 1)) {
-    out << "specular cut-off " << specular_cutoff << " is out of range: at least 0 and below 1 is expected";
+  } else if (!(specular_cutoff >= 1e-6f && specular_cutoff < 1)) {
+    out << "specular cut-off " << specular_cutoff
+        << " is out of range: at least 0.000001 and below 1 is expected";
   } else if (light_samples < 1 || light_samples > 65536) {
     out << "light samples " << light_samples << " is out of range: 1 to 65536 is expected";
   } else if (gather_samples < 1 || gather_samples > 65536) {
@@ -51,7 +52,7 @@ struct Renderer::Impl {
   EyeShader shader;
 
   std::mutex tiles_mutex;
-  std::map<std::vector<uint8_t>, std::unique_ptr<StoredTiles>> tiles;  // by what they handle
+  std::map<std::vector<uint8_t>, std::unique_ptr<TileRenderer>> tiles;  // by what they handle
 
   explicit Impl(const Solution& s) : solution(s), shader(s) {}
 
@@ -62,11 +63,11 @@ struct Renderer::Impl {
   };
   struct Sums {  // of a tile
     double clamped = 0, cut_off = 0, shown = 0;
-    uint64_t rays = 0;
+    uint64_t rays = 0, eye_rays = 0;
   };
 
   // For pictures in this mode: what it reads from lobes alone they read, packet by packet.
-  const StoredTiles& TilesFor(const RenderOptions& options) {
+  const TileRenderer& TilesFor(const RenderOptions& options) {
     std::vector<uint8_t> handled;
     for (uint32_t m = 0; m < solution.scene.materials.size(); ++m) {
       const bool stored = shader.paths().specular().kind(m) == SpecularSurfaces::Kind::kNone &&
@@ -76,8 +77,8 @@ struct Renderer::Impl {
     const std::lock_guard lock(tiles_mutex);
     auto& out = tiles[handled];
     if (!out) {
-      out = std::make_unique<StoredTiles>(solution, shader.paths().tracer(), shader.stored().locator(),
-                                          std::move(handled));
+      out = std::make_unique<TileRenderer>(solution, shader.paths().tracer(), shader.stored().locator(),
+                                           std::move(handled));
     }
     return *out;
   }
@@ -104,7 +105,7 @@ struct Renderer::Impl {
         image->color.at(x - window.x0, y - window.y0) = colour / float(samples);
         sum->shown += colour.sum();
         sum->clamped += light.clamped.sum();
-        sum->rays += uint64_t(samples);
+        sum->eye_rays += uint64_t(samples);
         PutLayers(view, scratch.rays, scratch.hits, light, x - window.x0, y - window.y0, image);
       }
     }
@@ -139,7 +140,9 @@ struct Renderer::Impl {
   void PutGeometry(Layer layer, const CameraView& view, const Ray& ray, const RayHit& hit, float each,
                    Rgb* out) const {
     if (layer == Layer::kAlbedo) {
-      *out += each * NormalAlbedo(solution.scene.materials[shader.paths().material(hit.face)].reflectance);
+      const Material& material = solution.scene.materials[shader.paths().material(hit.face)];
+      if (hit.side == Side::kBack && !material.double_sided && !material.body()) return;  // black
+      *out += each * NormalAlbedo(material.reflectance);
     } else if (layer == Layer::kNormal) {
       *out += each * shader.paths().ShadingNormal(hit).array();
     } else if (layer == Layer::kPosition) {
@@ -176,7 +179,7 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
   const PixelRect window = options.Window();
   LayeredImage image(window.width(), window.height(), wanted);
 
-  const StoredTiles& tiles = impl_->TilesFor(options);
+  const TileRenderer& tiles = impl_->TilesFor(options);
   const int side = wanted.empty() ? tiles.TileSide(eye_rays, options.width, options.height) : kSmallTile;
   tbb::enumerable_thread_specific<Impl::Scratch> scratches;
   std::vector<Impl::Sums> sums(TileCount(options, side));
@@ -195,13 +198,13 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
         sum.clamped += light.clamped.sum();
         return light.Sum();
       };
-      StoredTiles::Sums stored;
+      TileRenderer::Sums stored;
       tiles.Render(eye_rays, tile, window, shade, &image.color, &stored);
       sum.clamped += stored.clamped;
       sum.shown += stored.shown;
-      sum.rays += stored.rays;
+      sum.eye_rays += stored.rays;
     }
-    sum.rays += scratch.work.rays;
+    sum.rays += sum.eye_rays + scratch.work.rays;
     sum.cut_off += scratch.work.cut_off;
   };
   const bool complete = ForEachTile(options, side, render_tile, progress);
@@ -209,15 +212,18 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
   if (report) {
     *report = {};
     double clamped = 0, shown = 0, cut = 0;
+    uint64_t eye_ray_count = 0;
     for (const auto& s : sums) {
       clamped += s.clamped;
       shown += s.shown;
       cut += s.cut_off;
       report->rays += s.rays;
+      eye_ray_count += s.eye_rays;
     }
     report->clamped = shown > 0 ? clamped / shown : 0;
     // Light behind the last mirror is taken to be as bright as the picture.
-    report->cut_off = cut / (3.0 * eye_rays.per_pixel() * window.width() * window.height());
+    report->cut_off = eye_ray_count > 0 ? cut / (3.0 * double(eye_ray_count)) : 0;
+    report->samples_per_pixel = eye_rays.per_pixel();
     report->complete = complete;
     report->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -48,7 +48,8 @@ struct RenderOptions {
 
 struct RenderReport {
   double seconds = 0;
-  uint64_t rays = 0;
+  uint64_t rays = 0;          ///< of all kinds
+  int samples_per_pixel = 0;  ///< eye rays, rounded up
   /// What the picture lost, as fractions of its mean: negative lobe values clamped to zero, and light
   /// by way of mirrors and glass that was not followed to its end (as if it were as bright as the mean).
   double clamped = 0, cut_off = 0;
@@ -68,7 +69,8 @@ class Renderer {
   Image Render(const CameraView& view, const RenderOptions& options, RenderReport* report,
                const std::function<bool(double)>& progress = {}) const;
 
-  /// The same with layers. The colour does not depend on which are wanted, up to rounding.
+  /// The same with layers. With any of them every lobe is read where it is needed, not interpolated over the
+  /// film (FilmGrid::kTolerance).
   LayeredImage Render(const CameraView& view, const RenderOptions& options, const LayerSet& wanted,
                       RenderReport* report, const std::function<bool(double)>& progress = {}) const;
 

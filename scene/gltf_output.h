@@ -13,9 +13,9 @@ namespace lobe {
 /// NaN, which JSON lacks, become null.
 nlohmann::json JsonNumber(float value);
 
-/// Standard glTF with KHR_materials_emissive_strength, _ior, _specular and _diffuse_transmission where
-/// needed. Lambert, Phong and Ward go into LOBE_materials_brdf beside the nearest that other programs can
-/// show.
+/// Standard glTF with KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume and
+/// _diffuse_transmission where needed. Lambert, Phong and Ward go into LOBE_materials_brdf beside the nearest
+/// that other programs can show.
 nlohmann::json GltfMaterial(const Material& material);
 
 /// An entry of the document's `cameras`. `near_plane` in metres: glTF wants one, Lobe has none.

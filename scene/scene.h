@@ -20,6 +20,8 @@ struct Material {
   /// Also of whatever transmits, since light goes both ways through it: readers see to that.
   bool double_sided = false;
   bool emits() const { return (emission > 0).any(); }
+  /// The back, too. The inside of solid glass never does, whatever double_sided says.
+  bool emits_behind() const { return emits() && double_sided && !body(); }
   bool transmits() const { return Transmits(reflectance); }
   bool glass() const { return IsGlass(reflectance); }  ///< light goes on through it, unscattered
   bool pane() const { return glass() && !thick(); }    ///< glass so thin that it goes straight on

@@ -118,7 +118,7 @@ SpecularWays SpecularSurfaces::Continue(uint32_t material, Side side, const HitP
   }
   const float eta = n_here / n_beyond;
   const float sine2_beyond = eta * eta * (1 - cosine * cosine);
-  if (sine2_beyond >= 1) {
+  if (!(sine2_beyond < 1)) {  // an index of 0, infinity, gives no number at all
     ways.reflection.weight = Rgb::Constant(1);
     return ways;
   }

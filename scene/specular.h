@@ -69,7 +69,6 @@ class SpecularSurfaces {
   };
   Kind kind(uint32_t material) const { return kinds_[material]; }
   bool glass(uint32_t material) const { return kinds_[material] >= Kind::kPane; }
-  bool any_glass() const { return any_pane_ || any_body_; }
   bool any_pane() const { return any_pane_; }
   bool any_body() const { return any_body_; }
 

@@ -160,7 +160,7 @@ std::vector<Emitter> FindEmitters(const Scene& scene) {
     const Vec3 n = scene.GeometricNormal(scene.faces[f]);
     const float area = scene.Area(scene.faces[f]);
     out.push_back({f, Side::kFront, p, n, area, material.emission});
-    if (material.double_sided)
+    if (material.emits_behind())
       out.push_back({f, Side::kBack, {p[0], p[2], p[1]}, -n, area, material.emission});
   }
   return out;

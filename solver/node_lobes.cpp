@@ -88,7 +88,7 @@ Rgb NodeLobes::Flux(uint32_t node) const {
 
 Rgb NodeLobes::Radiance(uint32_t node, const Vec3& wo_local, float* basis, LobePart part) const {
   const PartDegrees& d = degrees(node);
-  const int degree = part == LobePart::kBoth ? d.max_degree() : part == LobePart::kBase ? d.base : d.gloss;
+  const int degree = part == LobePart::kBoth ? d.max_degree() : d.base;
   if (degree < 0) return Rgb::Zero();
   if (d.diffuse()) {
     const float* v = base(node);
@@ -104,10 +104,9 @@ Rgb NodeLobes::RadianceFromBasis(uint32_t node, const float* basis, LobePart par
   Rgb out = Rgb::Zero();
   const float *b = base(node), *g = gloss(node);
   const int base_count = d.base_count(), gloss_count = d.gloss_count();
-  const bool with_base = base_count > 0 && part != LobePart::kGloss;
   const bool with_gloss = gloss_count > 0 && part != LobePart::kBase;
   for (int c = 0; c < 3; ++c) {
-    if (with_base) out[c] += Dot(b + c * base_count, basis, base_count);
+    if (base_count > 0) out[c] += Dot(b + c * base_count, basis, base_count);
     if (with_gloss) out[c] += Dot(g + c * gloss_count, basis, gloss_count);
   }
   return out;

@@ -24,8 +24,8 @@ struct PartDegrees {
   bool operator==(const PartDegrees&) const = default;
 };
 
-/// Which of a coated material's two parts is read.
-enum class LobePart { kBoth, kBase, kGloss };
+/// What of a coated material is read.
+enum class LobePart { kBoth, kBase };
 
 /// A field of lobes, one per node: reflected radiance leaving in every direction, in each node's own
 /// frame. A node's floats: base, channel by channel (c * base_count + k), then gloss likewise. A diffuse

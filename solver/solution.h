@@ -32,8 +32,8 @@ struct Solution {
   std::vector<double> material_errors;    ///< flux-weighted error of the gloss lobes
   std::vector<uint8_t> hidden;            ///< per node: inside something, weight 0 in interpolation
   NodeLobes total;                        ///< reflected radiance, all bounces shot so far included
-  NodeLobes direct;                       ///< of it, straight from emitters, by no mirror; indirect = total - direct
-  NodeLobes unshot;                       ///< of it, not yet passed on
+  NodeLobes direct;  ///< of it, straight from emitters, by no mirror; indirect = total - direct
+  NodeLobes unshot;  ///< of it, not yet passed on
   /// Per node: irradiance so far, summed over channels, which shooting needs to go on. Empty with links.
   std::vector<float> received;
   Ledger ledger;

@@ -1,4 +1,4 @@
-#include "render/stored_light.h"
+#include "render/packet_light.h"
 
 #include <algorithm>
 #include <bit>
@@ -78,7 +78,7 @@ const Lagrange kLagrange;
 
 }  // namespace
 
-struct StoredLight::State {
+struct PacketLight::State {
   const Solution& solution;
   const ElementLocator& locator;
   const std::vector<uint8_t>& handled;
@@ -124,7 +124,7 @@ struct StoredLight::State {
   void ReadExactly(uint32_t node, const EyePacket& rays, float* out);
 };
 
-const Place& StoredLight::State::Find(uint32_t face_side, float u, float v) {
+const Place& PacketLight::State::Find(uint32_t face_side, float u, float v) {
   ++counts.lookups;
   const Face& face = solution.scene.faces[face_side / 2];
   const bool here = handled[2 * face.material + face_side % 2];
@@ -139,14 +139,14 @@ const Place& StoredLight::State::Find(uint32_t face_side, float u, float v) {
   if (!here) return place;
   place.kind = Kind::kLinear;
   const Material& material = solution.scene.materials[face.material];
-  if (Side(face_side % 2) == Side::kFront || material.double_sided) {
+  if (Side(face_side % 2) == Side::kFront ? material.emits() : material.emits_behind()) {
     std::copy_n(material.emission.data(), 3, place.emission);
     if (element) Fill(*leaf, &place);
   }
   return place;
 }
 
-void StoredLight::State::Fill(const ElementLocator::Leaf& leaf, Place* place) const {
+void PacketLight::State::Fill(const ElementLocator::Leaf& leaf, Place* place) const {
   std::copy_n(leaf.w0.data(), 3, place->w0);
   std::copy_n(leaf.w1.data(), 3, place->w1);
   const auto& corners = solution.mesh.elements[leaf.element];
@@ -171,14 +171,14 @@ void StoredLight::State::Fill(const ElementLocator::Leaf& leaf, Place* place) co
   }
 }
 
-void StoredLight::State::AddNode(uint32_t node, const float* local, float* out) const {
+void PacketLight::State::AddNode(uint32_t node, const float* local, float* out) const {
   const PartDegrees& d = solution.total.degrees(node);
   const float *x = local, *y = local + kLanes, *z = local + 2 * kLanes;
   if (d.base >= 0) lanes.Add(solution.total.base(node), d.base, x, y, z, out);
   if (d.gloss >= 0) lanes.Add(solution.total.gloss(node), d.gloss, x, y, z, out);
 }
 
-uint32_t StoredLight::State::FindNode(uint32_t node) {
+uint32_t PacketLight::State::FindNode(uint32_t node) {
   const uint32_t slot = (node ^ node >> 10) % kSlots;
   const uint64_t tag = tile << 32 | node;
   if (tags[slot] == tag) return slot;
@@ -197,7 +197,7 @@ uint32_t StoredLight::State::FindNode(uint32_t node) {
   return slot;
 }
 
-void StoredLight::State::ReadExactly(uint32_t node, const EyePacket& rays, float* out) {
+void PacketLight::State::ReadExactly(uint32_t node, const EyePacket& rays, float* out) {
   ++counts.exact_reads;
   alignas(64) float local[3 * kLanes];
   ToLocal(Frame(solution.mesh.node_normal[node]), -1, rays.x, rays.y, rays.z, local);
@@ -218,7 +218,7 @@ LOBE_INLINE void EvaluateLagrange(int n, const FloatLanes& s, FloatLanes* out) {
   }
 }
 
-// The loop of StoredLight::Read. `State` is a parameter because it is private.
+// The loop of PacketLight::Read. `State` is a parameter because it is private.
 template <typename State>
 LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const PacketHits& hits, uint32_t lanes,
                                float* radiance) {
@@ -312,13 +312,13 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
 
 }  // namespace
 
-StoredLight::StoredLight(const Solution& solution, const ElementLocator& locator,
+PacketLight::PacketLight(const Solution& solution, const ElementLocator& locator,
                          const std::vector<uint8_t>& handled)
     : state_(std::make_unique<State>(solution, locator, handled)) {}
-StoredLight::~StoredLight() = default;
-StoredLight::StoredLight(StoredLight&&) noexcept = default;
+PacketLight::~PacketLight() = default;
+PacketLight::PacketLight(PacketLight&&) noexcept = default;
 
-void StoredLight::Start(const CameraView::Film& film, float x0, float y0, float x1, float y1) {
+void PacketLight::Start(const CameraView::Film& film, float x0, float y0, float x1, float y1) {
   ++state_->tile;
   state_->Forget();
   state_->grid.Start(film, x0, y0, x1, y1);
@@ -327,17 +327,17 @@ void StoredLight::Start(const CameraView::Film& film, float x0, float y0, float 
   }
 }
 
-LOBE_SIMD_CLONES uint32_t StoredLight::Read(const EyePacket& rays, const PacketHits& hits, uint32_t lanes,
+LOBE_SIMD_CLONES uint32_t PacketLight::Read(const EyePacket& rays, const PacketHits& hits, uint32_t lanes,
                                             float* radiance) {
   return ReadLanes(*state_, rays, hits, lanes, radiance);
 }
 
-double StoredLight::TakeClamped() {
+double PacketLight::TakeClamped() {
   const double out = state_->clamped;
   state_->clamped = 0;
   return out;
 }
 
-const StoredLight::Counts& StoredLight::counts() const { return state_->counts; }
+const PacketLight::Counts& PacketLight::counts() const { return state_->counts; }
 
 }  // namespace lobe

@@ -1,11 +1,11 @@
-#include "render/stored_radiance.h"
+#include "render/lobe_lookup.h"
 
 #include "brdf/frame.h"
 
 namespace lobe {
 
-Rgb StoredRadiance::Read(const NodeLobes& lobes, LobePart part, const Mesh::Location& where, const Vec3& wo,
-                         float* basis) const {
+Rgb LobeLookup::Read(const NodeLobes& lobes, LobePart part, const Mesh::Location& where, const Vec3& wo,
+                     float* basis) const {
   if (where.element == kNone) return Rgb::Zero();
   const Mesh& mesh = solution_.mesh;
   const NodeWeights w = Interpolate(mesh, solution_.hidden, where);

@@ -1,4 +1,4 @@
-#include "render/stored_tiles.h"
+#include "render/tile_renderer.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "render/film_grid.h"
-#include "render/stored_light.h"
+#include "render/packet_light.h"
 #include "scene/element_locator.h"
 
 namespace lobe {
@@ -31,30 +31,30 @@ void Fold(int pixels, float* sum) {
 
 }  // namespace
 
-struct StoredTiles::Impl {
+struct TileRenderer::Impl {
   const RayTracer& tracer;
   const ElementLocator& locator;
   const std::vector<uint8_t> handled;
   int l_max = 0;
-  tbb::enumerable_thread_specific<StoredLight> lights;
+  tbb::enumerable_thread_specific<PacketLight> lights;
 
   Impl(const Solution& solution, const RayTracer& t, const ElementLocator& l, std::vector<uint8_t> h)
       : tracer(t),
         locator(l),
         handled(std::move(h)),
-        lights([this, &solution] { return StoredLight(solution, locator, handled); }) {
+        lights([this, &solution] { return PacketLight(solution, locator, handled); }) {
     for (uint32_t p = 0; p < solution.total.patch_count(); ++p) {
       l_max = std::max(l_max, solution.total.patch_degrees(p).max_degree());
     }
   }
 };
 
-StoredTiles::StoredTiles(const Solution& solution, const RayTracer& tracer, const ElementLocator& locator,
-                         std::vector<uint8_t> handled)
+TileRenderer::TileRenderer(const Solution& solution, const RayTracer& tracer, const ElementLocator& locator,
+                           std::vector<uint8_t> handled)
     : impl_(std::make_unique<Impl>(solution, tracer, locator, std::move(handled))) {}
-StoredTiles::~StoredTiles() = default;
+TileRenderer::~TileRenderer() = default;
 
-int StoredTiles::TileSide(const EyeRays& eye_rays, int width, int height) const {
+int TileRenderer::TileSide(const EyeRays& eye_rays, int width, int height) const {
   constexpr int kEnough = 64;  // tiles; chosen: some for each of 16 threads or more
   int side = 32;
   while (side > kSmallTile) {
@@ -68,9 +68,9 @@ int StoredTiles::TileSide(const EyeRays& eye_rays, int width, int height) const 
   return side;
 }
 
-void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const PixelRect& window,
-                         const General& general, Image* image, Sums* sums) const {
-  StoredLight& light = impl_->lights.local();
+void TileRenderer::Render(const EyeRays& eye_rays, const Tile& tile, const PixelRect& window,
+                          const General& general, Image* image, Sums* sums) const {
+  PacketLight& light = impl_->lights.local();
   const float beyond = eye_rays.reach() - 0.5f;  // filters look over a tile's edge
   light.Start(eye_rays.film(), float(tile.x0) - beyond, float(tile.y0) - beyond, float(tile.x1) + beyond,
               float(tile.y1) + beyond);
@@ -80,20 +80,14 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const PixelR
   EyePacket rays;
   PacketHits hits;
   alignas(64) float radiance[3 * kLanes], sum[3 * kLanes];
-  const PixelRect part{std::max(tile.x0, window.x0), std::max(tile.y0, window.y0),
-                       std::min(tile.x1, window.x1), std::min(tile.y1, window.y1)};
   for (int y = tile.y0; y < tile.y1; y += block) {
     for (int x = tile.x0; x < tile.x1; x += block) {
-      // Columns and rows of the block that are to be shown.
-      const int left = std::max(part.x0 - x, 0), right = std::min(part.x1 - x, block);
-      const int top = std::max(part.y0 - y, 0), bottom = std::min(part.y1 - y, block);
-      if (left >= right || top >= bottom) continue;
-      uint32_t lanes = 0xffff;
-      if (left > 0 || right < block || top > 0 || bottom < block) {
+      const int columns = std::min(block, tile.x1 - x), rows = std::min(block, tile.y1 - y);
+      uint32_t lanes = 0xffff;  // whose pixels are in the tile
+      if (columns < block || rows < block) {
         lanes = 0;
         for (int i = 0; i < kLanes; ++i) {
-          const int column = i % pixels % block, row = i % pixels / block;
-          if (column >= left && column < right && row >= top && row < bottom) lanes |= 1u << i;
+          if (i % pixels % block < columns && i % pixels / block < rows) lanes |= 1u << i;
         }
       }
       for (int k = 0; k < eye_rays.packets_per_block(); ++k) {
@@ -113,15 +107,16 @@ void StoredTiles::Render(const EyeRays& eye_rays, const Tile& tile, const PixelR
         }
       }
       Fold(pixels, sum);
-      for (int row = top; row < bottom; ++row) {
-        for (int column = left; column < right; ++column) {
+      for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
           const float* of_pixel = sum + row * block + column;
           const Rgb pixel(of_pixel[0], of_pixel[kLanes], of_pixel[2 * kLanes]);
-          image->at(x + column - window.x0, y + row - window.y0) = pixel * per_sample;
           shown += pixel;
+          if (!window.Contains(x + column, y + row)) continue;
+          image->at(x + column - window.x0, y + row - window.y0) = pixel * per_sample;
         }
       }
-      sums->rays += uint64_t(right - left) * (bottom - top) * samples;
+      sums->rays += uint64_t(columns) * rows * samples;
     }
   }
   sums->shown += shown.cast<double>().sum();

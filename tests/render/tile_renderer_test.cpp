@@ -1,4 +1,4 @@
-#include "render/stored_tiles.h"
+#include "render/tile_renderer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 
 #include "brdf/frame.h"
 #include "render/film_grid.h"
+#include "render/packet_light.h"
 #include "render/renderer.h"
-#include "render/stored_light.h"
 #include "scene/gltf_scene.h"
 #include "solver/solver.h"
 #include "tests/support/scene_builder.h"
@@ -134,7 +134,7 @@ const Solution& Balls() {
   return solution;
 }
 
-TEST(StoredTilesTest, ShowWhatThePlainWayShowsInAGlossyRoom) {
+TEST(TileRendererTest, ShowWhatThePlainWayShowsInAGlossyRoom) {
   const Camera& camera = Cornell().scene.cameras.at(0);
   ExpectAgrees(Cornell(), camera, Size(96, 64), "narrow tiles");
   ExpectAgrees(Cornell(), Cornell().scene.cameras.at(1), Size(96, 64), "the other view");
@@ -146,7 +146,7 @@ TEST(StoredTilesTest, ShowWhatThePlainWayShowsInAGlossyRoom) {
   ExpectAgrees(Cornell(), zoom, Size(64, 64, 4), "long lens");
 }
 
-TEST(StoredTilesTest, ShowWhatThePlainWayShowsOnCurvedGlossAndWideLenses) {
+TEST(TileRendererTest, ShowWhatThePlainWayShowsOnCurvedGlossAndWideLenses) {
   Camera camera = Balls().scene.cameras.at(0);
   ExpectAgrees(Balls(), camera, Size(120, 90), "balls");
   ExpectAgrees(Balls(), camera, Size(60, 60, 4, PixelFilter::kBlackmanHarris), "filter");
@@ -154,13 +154,13 @@ TEST(StoredTilesTest, ShowWhatThePlainWayShowsOnCurvedGlossAndWideLenses) {
   ExpectAgrees(Balls(), camera, Size(48, 48), "166 degrees");
 }
 
-TEST(StoredTilesTest, HiddenNodesHaveNoWeight) {
+TEST(TileRendererTest, HiddenNodesHaveNoWeight) {
   Solution s = Balls();
   for (uint32_t n = 0; n < s.mesh.node_count(); ++n) s.hidden[n] = n % 3 == 1 || n % 7 < 2;
   ExpectAgrees(s, s.scene.cameras.at(0), Size(90, 70), "hidden by hand");
 }
 
-TEST(StoredTilesTest, ClampNegativeLightAndSayHowMuch) {
+TEST(TileRendererTest, ClampNegativeLightAndSayHowMuch) {
   Solution s = Balls();
   for (uint32_t n = 0; n < s.mesh.node_count(); n += 2) {
     for (float& c : s.total.all(n)) c = -c;
@@ -168,7 +168,7 @@ TEST(StoredTilesTest, ClampNegativeLightAndSayHowMuch) {
   ExpectAgrees(s, s.scene.cameras.at(0), Size(60, 60), "every other node negative");
 }
 
-TEST(StoredTilesTest, GiveTheSameBitsForAnyNumberOfThreadsAndAgain) {
+TEST(TileRendererTest, GiveTheSameBitsForAnyNumberOfThreadsAndAgain) {
   const Solution& s = Balls();
   const Renderer renderer(s);
   const RenderOptions o = Size(130, 75);
@@ -184,7 +184,7 @@ TEST(StoredTilesTest, GiveTheSameBitsForAnyNumberOfThreadsAndAgain) {
   }
 }
 
-TEST(StoredTilesTest, AskTheGeneralWayForWhatIsNotHandledAndNothingElse) {
+TEST(TileRendererTest, AskTheGeneralWayForWhatIsNotHandledAndNothingElse) {
   const Solution& s = Balls();
   const RayTracer tracer(s.scene);
   std::vector<uint8_t> handled(2 * s.scene.materials.size(), 1);
@@ -193,11 +193,11 @@ TEST(StoredTilesTest, AskTheGeneralWayForWhatIsNotHandledAndNothingElse) {
                                   s.scene.materials.begin());
   handled[2 * gloss] = handled[2 * gloss + 1] = 0;
   const ElementLocator locator(s.mesh);
-  const StoredTiles tiles(s, tracer, locator, handled);
+  const TileRenderer tiles(s, tracer, locator, handled);
   const CameraView view(s.scene.cameras[0], 64, 64);
   const EyeRays eye_rays(view, Size(64, 64, 1));
   Image image(64, 64);
-  StoredTiles::Sums sums;
+  TileRenderer::Sums sums;
   int asked = 0, met = 0;
   const auto general = [&](const Ray& ray, const RayHit& hit, int x, int y, int sample) -> Rgb {
     ++asked;
@@ -222,7 +222,7 @@ TEST(StoredTilesTest, AskTheGeneralWayForWhatIsNotHandledAndNothingElse) {
   EXPECT_GT(met, 100);
 }
 
-TEST(StoredLightTest, ReadsLobesOncePerTileOrExactly) {
+TEST(PacketLightTest, ReadsLobesOncePerTileOrExactly) {
   const Solution& s = Cornell();
   const RayTracer tracer(s.scene);
   const ElementLocator locator(s.mesh);
@@ -232,7 +232,7 @@ TEST(StoredLightTest, ReadsLobesOncePerTileOrExactly) {
     camera.fov_y = fov;
     const CameraView view(camera, 32, 32);
     const EyeRays eye_rays(view, Size(32, 32));
-    StoredLight light(s, locator, handled);
+    PacketLight light(s, locator, handled);
     light.Start(eye_rays.film(), 0, 0, 32, 32);
     EyePacket rays;
     PacketHits hits;

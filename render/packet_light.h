@@ -24,16 +24,16 @@ namespace lobe {
 /// The general way is Renderer's per ray; what is not light stored on a surface (mirrors, for one) is left to
 /// it.
 ///
-/// A StoredLight is one thread's: it keeps the last elements and nodes it met, about a quarter of a megabyte
+/// A PacketLight is one thread's: it keeps the last elements and nodes it met, about a quarter of a megabyte
 /// whatever the scene; lobes are read where they are stored. Results do not depend on what it met before
 /// Start.
-class StoredLight {
+class PacketLight {
  public:
   /// `handled[2 * material + side]`: 1 if light of that side of the material is read here. References are
   /// kept.
-  StoredLight(const Solution& solution, const ElementLocator& locator, const std::vector<uint8_t>& handled);
-  ~StoredLight();
-  StoredLight(StoredLight&&) noexcept;
+  PacketLight(const Solution& solution, const ElementLocator& locator, const std::vector<uint8_t>& handled);
+  ~PacketLight();
+  PacketLight(PacketLight&&) noexcept;
 
   /// Packets that follow pass the film within [x0, x1] x [y0, y1], in pixels.
   void Start(const CameraView::Film& film, float x0, float y0, float x1, float y1);

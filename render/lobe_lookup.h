@@ -7,9 +7,9 @@ namespace lobe {
 
 /// Reads a solution's lobes where rays meet its surfaces. Values are unclamped: a lobe cut off at l_max rings
 /// below zero. Keeps references to the solution. Const methods may run in many threads.
-class StoredRadiance {
+class LobeLookup {
  public:
-  explicit StoredRadiance(const Solution& solution) : solution_(solution), locator_(solution.mesh) {}
+  explicit LobeLookup(const Solution& solution) : solution_(solution), locator_(solution.mesh) {}
 
   Mesh::Location Locate(const RayHit& hit) const { return locator_.Locate(hit); }
   const ElementLocator& locator() const { return locator_; }
