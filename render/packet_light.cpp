@@ -139,10 +139,10 @@ const Place& PacketLight::State::Find(uint32_t face_side, float u, float v) {
   if (!here) return place;
   place.kind = Kind::kLinear;
   const Material& material = solution.scene.materials[face.material];
-  if (Side(face_side % 2) == Side::kFront ? material.emits() : material.emits_behind()) {
-    std::copy_n(material.emission.data(), 3, place.emission);
-    if (element) Fill(*leaf, &place);
-  }
+  const bool front = Side(face_side % 2) == Side::kFront;
+  if (!front && !material.double_sided) return place;  // black
+  if (front || material.emits_behind()) std::copy_n(material.emission.data(), 3, place.emission);
+  if (element) Fill(*leaf, &place);
   return place;
 }
 

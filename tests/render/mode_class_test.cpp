@@ -263,5 +263,70 @@ TEST(ModeClassTest, LDE_AndLPDE_ByAPaneWithABase) {
   ExpectModesAsTraced(b, {{0.9f, 0.9f, 0.6f}, {0, 0, 0}}, "half a pane", kEveryMode, 0.02);
 }
 
+// A pane that glows itself is met by shadow rays and by directions, and hides nothing.
+TEST(ModeClassTest, LGE_AGlowingPane) {
+  for (const float roughness : {0.6f, 0.25f}) {
+    Stage b;
+    b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("brass", Metal(roughness, kBrass)));
+    b.Down(-1.3f, 1.3f, -1.3f, 1.3f, 1,
+           b.AddMaterial("glowing pane", Pane(1.5f, Rgb::Constant(1)), Rgb(3, 2, 1), /*double_sided=*/true));
+    ExpectModesAsTraced(b, {{0.7f, 0.8f, 0.5f}, {0, 0, 0}, 0.1f}, "a glowing pane",
+                        roughness < 0.3f ? kSharpModes : kEveryMode, 0.04);
+    ExpectModesAsTraced(b, {{0.7f, 0.8f, 0.5f}, {0, 0, 0}, 0.1f}, "a glowing pane", {kDirectMode}, 0.04);
+  }
+}
+
+// The inside of solid glass does not emit, whatever doubleSided says, for any of the engines.
+TEST(ModeClassTest, LDE_AGlowingBodyOfGlassGlowsOnItsOutside) {
+  Stage b;
+  b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
+  b.AddBox({-0.3f, 0.6f, -0.3f}, {0.3f, 1.2f, 0.3f},
+           b.AddMaterial("glowing glass", ClearGlass(1.5f), Rgb(3, 2, 1), /*double_sided=*/true));
+  ExpectModesAsTraced(b, kFloor, "LDE by glowing glass", kEveryMode, 0.02);
+}
+
+// Whether faint ways are followed does not depend on how many share the light.
+TEST(ModeClassTest, LSGE_AnyNumberOfGatheredDirectionsFindsTheLampInTheMirror) {
+  MetallicRoughness plastic = Metal(0.2f, Rgb::Constant(0.02f));
+  plastic.metallic = 0;
+  Stage b;
+  b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("plastic", plastic));
+  b.Up(-1.8f, -0.6f, -0.6f, 0.6f, 0.5f, b.lamp);
+  b.Down(-3, 3, -3, 3, 1.5f, b.AddMaterial("mirror", Metal(0)));
+  b.AddCamera("view", {1, 1, 0}, {0, 0, 0}, Vec3::UnitY(), 0.1f);
+  const Scene scene = b.Build();
+  const Solution solution = Solve(scene, Options(Transport::kLinks));
+  const Renderer renderer(solution);
+  RenderOptions o = OptionsFor(kGatherMode, 8, 64);
+  const auto mean = [&](int samples) {
+    o.gather_samples = samples;
+    return MeanOf(renderer.Render(CameraView(scene.cameras[0], 8, 8), o, nullptr)).mean();
+  };
+  const double few = mean(1);
+  ASSERT_GT(few, 0.01);
+  EXPECT_NEAR(mean(16) / few, 1, 0.03);
+  EXPECT_NEAR(mean(256) / few, 1, 0.03);
+}
+
+// Shadow rays go through panes whatever the depth of mirrors; so do the directions that share with them.
+TEST(ModeClassTest, LPGE_DoesNotDependOnTheDepthOfMirrors) {
+  Stage b;
+  b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("brass", Metal(0.2f, kBrass)));
+  b.Down(-1.5f, -0.5f, -1.2f, -0.2f, 1.2f, b.lamp);
+  b.Up(-3, 3, -3, 3, 1, AddPane(&b));
+  b.AddCamera("view", {0.7f, 0.8f, 0.5f}, {0, 0, 0}, Vec3::UnitY(), 0.1f);
+  const Scene scene = b.Build();
+  const Solution solution = Solve(scene, Options(Transport::kLinks));
+  const Renderer renderer(solution);
+  RenderOptions o = OptionsFor(kGatherMode, 8, 64);
+  const auto mean = [&](int depth) {
+    o.max_mirror_depth = depth;
+    return MeanOf(renderer.Render(CameraView(scene.cameras[0], 8, 8), o, nullptr)).mean();
+  };
+  const double deep = mean(16);
+  ASSERT_GT(deep, 0.1);
+  EXPECT_NEAR(mean(0) / deep, 1, 0.01);
+}
+
 }  // namespace
 }  // namespace lobe

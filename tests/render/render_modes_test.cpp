@@ -275,21 +275,32 @@ TEST(RenderModesTest, GiveTheSameBitsForAnyNumberOfThreads) {
     RenderOptions o = OptionsFor(mode, 50, 4);
     o.height = 30;
     std::vector<LayeredImage> images;
+    std::vector<Image> plain;  // by packets
     for (const int threads : {1, 2, 7}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       tbb::task_arena arena(threads);
       arena.execute([&] {
         images.push_back(Renderer(solution).Render(CameraView(solution.scene.cameras[0], 50, 30), o,
                                                    LayerSet::All(), nullptr));
+        plain.push_back(Renderer(solution).Render(CameraView(solution.scene.cameras[0], 50, 30), o, nullptr));
       });
     }
     for (int i = 1; i < 3; ++i) {
       EXPECT_TRUE(SameBits(images[0].color, images[i].color)) << mode.name;
+      EXPECT_TRUE(SameBits(plain[0], plain[i])) << mode.name;
       for (const auto& [layer, image] : images[0].layers) {
         EXPECT_TRUE(SameBits(image, images[i].layers.at(layer))) << mode.name << ", " << LayerName(layer);
       }
     }
   }
+}
+
+TEST(RenderModesTest, APictureStoppedAsItsLastTileEndsIsComplete) {
+  const Solution solution = MixedRoom();
+  RenderReport report;
+  Renderer(solution).Render(ViewOf(solution.scene, 8), OptionsFor(kAutoMode, 8, 1), &report,
+                            [](double fraction) { return fraction < 1; });
+  EXPECT_TRUE(report.complete);
 }
 
 TEST(RenderModesTest, SeedsChangeWhatIsSampledAndOnlyThat) {
