@@ -36,8 +36,7 @@ struct RenderOptions {
   int max_mirror_depth = 16;
   float specular_cutoff = 1e-3f;
   RenderMode mode = RenderMode::kAuto;
-  int light_samples = 1;  ///< per eye ray, in mode direct
-
+  int light_samples = 1;     ///< per eye ray, in mode direct
   int gather_samples = 4;    ///< per eye ray and gathered surface; powers of two spread best
   bool gather_base = false;  ///< in mode gather: trace all that is reflected, of every material
   uint64_t seed = 1;
