@@ -133,6 +133,14 @@ ScalarTable SchlickTables::Mix(double a, double b) const {
   return out;
 }
 
+ScalarTable ScalarTable::Scaled(double factor) const {
+  ScalarTable out = *this;
+  out.zernike *= factor;
+  out.albedo *= factor;
+  out.norm2 *= factor * factor;
+  return out;
+}
+
 double ScalarTable::Error(int l) const { return ErrorWithin(*this, l); }
 
 double ScalarTable::ErrorWithin(const ScalarTable& whole, int l) const {

@@ -58,6 +58,9 @@ struct ScalarTable {
   /// (equal knots), of which it is part.
   double ErrorWithin(const ScalarTable& whole, int l) const;
 
+  /// The table of `factor` f.
+  ScalarTable Scaled(double factor) const;
+
   /// Builds at degree l_max with `knots` knots (0: DefaultKnots). `rule.width` must suit f.
   static ScalarTable Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots = 0);
   /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
