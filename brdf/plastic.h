@@ -14,7 +14,7 @@ namespace lobe {
 /// that microfacets would scatter twice is counted there, so that none is lost.
 /// Base: T(theta_i) T(theta_o) rho / (pi n^2 (1 - rho R_in)). Light is scattered under the coat, meets it
 /// from inside, is thrown back by R_in, and so on, a geometric series; the way out has the shape of the way
-/// in, times 1/n^2. As étendue is kept, n^2 (1 - R_in) = mean T = 2 int T cos d cos, from which R_in follows.
+/// in, times 1/n^2. As etendue is kept, n^2 (1 - R_in) = mean T = 2 int T cos d cos, from which R_in follows.
 /// So the base has albedo T rho (1 - R_in) / (1 - rho R_in): with rho = 1 everything is reflected at every
 /// angle, exactly, and never more; it is reciprocal. (A smooth interface of the same kind: Mitsuba's
 /// plastic.)
