@@ -111,11 +111,11 @@ std::shared_ptr<const SchlickTables> TableCache::Get(const std::string& key,
   return tables;
 }
 
-std::shared_ptr<const ScalarTable> TableCache::GetPlain(const std::string& key,
-                                                        const std::function<ScalarTable()>& build) {
-  auto& table = plain_tables_[key];
-  if (!table) table = std::make_shared<ScalarTable>(build());
-  return table;
+std::shared_ptr<const std::vector<ScalarTable>> TableCache::GetPlain(
+    const std::string& key, const std::function<std::vector<ScalarTable>()>& build) {
+  auto& tables = plain_tables_[key];
+  if (!tables) tables = std::make_shared<std::vector<ScalarTable>>(build());
+  return tables;
 }
 
 Rgb PartLobes::Albedo(float cos_theta_i) const {
@@ -141,8 +141,8 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   } else if (const auto* oren = std::get_if<OrenNayar>(&reflectance); oren && oren->sigma == 0) {
     diffuse_albedo_ = LambertPart(base, oren->albedo);
   }
-  SetBase(BaseRecipes(reflectance), base_cap, cache);
-  SetGloss(GlossRecipes(reflectance), cap, options, cache);
+  if (const auto recipe = BaseRecipe(reflectance)) SetBase(*recipe, base_cap, cache);
+  if (const auto recipe = GlossRecipe(reflectance)) SetGloss(*recipe, cap, options, cache);
   const bool lambertian_base = base.l_max < 0 || base.control[0].empty();
   diffuse_ = gloss.l_max < 0 && lambertian_base;
   if (!diffuse_ && lambertian_base) SplineOfLambert(base, *spline_);
@@ -189,57 +189,47 @@ void MaterialLobes::SetMetallicRoughnessBase(const MetallicRoughness& gltf, int 
   for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, white->Mix(constant[c], -slope[c]));
 }
 
-void MaterialLobes::SetBase(const std::vector<LobeRecipe>& recipes, int cap, TableCache& cache) {
-  for (const LobeRecipe& recipe : recipes) {
-    const auto table = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap, *spline_), [&] {
-      ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule, spline_->knots());
-      for (int i = 0; recipe.albedo && i <= ScalarTable::kFine; ++i) {
-        built.albedo[i] = recipe.albedo(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
-      }
-      return built;
-    });
-    base.l_max = 0;
-    while (base.l_max < cap && table->Error(base.l_max) > kBaseError) ++base.l_max;
-    base.error = table->Error(base.l_max);
-    for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, table->Scaled(recipe.plain[c]));
-  }
+void MaterialLobes::SetBase(const LobeRecipe& recipe, int cap, TableCache& cache) {
+  const auto tables = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap, *spline_), [&] {
+    ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule, spline_->knots());
+    for (int i = 0; recipe.albedo && i <= ScalarTable::kFine; ++i) {
+      built.albedo[i] = recipe.albedo(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
+    }
+    return std::vector<ScalarTable>{std::move(built)};
+  });
+  const ScalarTable& table = tables->front();
+  base.l_max = 0;
+  while (base.l_max < cap && table.Error(base.l_max) > kBaseError) ++base.l_max;
+  base.error = table.Error(base.l_max);
+  for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, table.Scaled(recipe.plain[c]));
 }
 
-void MaterialLobes::SetGloss(const std::vector<LobeRecipe>& recipes, int cap, const LobeOptions& options,
+void MaterialLobes::SetGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options,
                              TableCache& cache) {
-  if (recipes.empty()) return;
-  // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
-  // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
-  const bool by_channel = recipes.size() == 3;
-  std::vector<ScalarTable> channels;
-  double worst_error = 0;
+  const std::string key = TableKey(recipe.key, cap, *spline_);
   bool within = true;
-  for (const LobeRecipe& recipe : recipes) {
-    const std::string key = TableKey(recipe.key, cap, *spline_);
-    int degree;
-    if (by_channel) {
-      const auto table = cache.GetPlain(
-          key, [&] { return ScalarTable::Build(recipe.f, cap, recipe.rule, spline_->knots()); });
-      degree = DegreeWithin(*table, options);
-      within = within && table->Error(degree) <= options.error;
-      channels.push_back(*table);
-    } else {
-      const auto tables =
-          cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule, spline_->knots()); });
-      degree = DegreeWithin(tables->plain, options);
-      within = tables->plain.Error(degree) <= options.error;
-      worst_error = tables->Mix(recipe.plain.mean(), recipe.rising.mean()).Error(degree);
-      for (int c = 0; c < 3; ++c) channels.push_back(tables->Mix(recipe.plain[c], recipe.rising[c]));
+  if (recipe.channels) {
+    const auto tables = cache.GetPlain(
+        key, [&] { return ScalarTable::BuildChannels(recipe.channels, cap, recipe.rule, spline_->knots()); });
+    for (const ScalarTable& table : *tables)
+      gloss.l_max = std::max(gloss.l_max, DegreeWithin(table, options));
+    for (int c = 0; c < 3; ++c) {
+      gloss.error = std::max(gloss.error, (*tables)[c].Error(gloss.l_max));
+      SetChannel(gloss, c, *spline_, (*tables)[c]);
     }
-    gloss.l_max = std::max(gloss.l_max, degree);
-  }
-  if (by_channel) {
-    for (const ScalarTable& channel : channels)
-      worst_error = std::max(worst_error, channel.Error(gloss.l_max));
+    within = gloss.error <= options.error;
+  } else {
+    const auto tables =
+        cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule, spline_->knots()); });
+    // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
+    // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
+    gloss.l_max = DegreeWithin(tables->plain, options);
+    gloss.error = tables->Mix(recipe.plain.mean(), recipe.rising.mean()).Error(gloss.l_max);
+    for (int c = 0; c < 3; ++c)
+      SetChannel(gloss, c, *spline_, tables->Mix(recipe.plain[c], recipe.rising[c]));
+    within = tables->plain.Error(gloss.l_max) <= options.error;
   }
   kind_ = within || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
-  gloss.error = worst_error;
-  for (int c = 0; c < 3; ++c) SetChannel(gloss, c, *spline_, channels[c]);
 }
 
 Rgb MaterialLobes::Albedo(float cos_theta_i) const {

@@ -64,13 +64,13 @@ class TableCache {
  public:
   std::shared_ptr<const SchlickTables> Get(const std::string& key,
                                            const std::function<SchlickTables()>& build);
-  /// The same for a reflectance without a coat's Fresnel.
-  std::shared_ptr<const ScalarTable> GetPlain(const std::string& key,
-                                              const std::function<ScalarTable()>& build);
+  /// The same for what has no coat's Fresnel: one table, or one a channel.
+  std::shared_ptr<const std::vector<ScalarTable>> GetPlain(
+      const std::string& key, const std::function<std::vector<ScalarTable>()>& build);
 
  private:
   std::map<std::string, std::shared_ptr<const SchlickTables>> tables_;
-  std::map<std::string, std::shared_ptr<const ScalarTable>> plain_tables_;
+  std::map<std::string, std::shared_ptr<const std::vector<ScalarTable>>> plain_tables_;
 };
 
 /// Everything transport needs to know of a material's reflection and transmission.
@@ -106,9 +106,8 @@ class MaterialLobes {
 
  private:
   void SetMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache);
-  void SetBase(const std::vector<LobeRecipe>& recipes, int cap, TableCache& cache);
-  void SetGloss(const std::vector<LobeRecipe>& recipes, int cap, const LobeOptions& options,
-                TableCache& cache);
+  void SetBase(const LobeRecipe& recipe, int cap, TableCache& cache);
+  void SetGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options, TableCache& cache);
 
   GlossKind kind_ = GlossKind::kNone;
   Reflectance reflectance_;
