@@ -78,18 +78,22 @@ std::string Digest(MeasuredBrdf::Coordinates coordinates, const MeasuredBrdf::Ax
   return digits;
 }
 
-// The half vector's angle at which f has fallen to half of what it is in the mirror direction, averaged over
+// The half vector's angle at which f has fallen to half of its largest value for good, averaged over
 // channels, for directions 0.2 rad from the half vector, at right angles to its tilt.
 double HalfWidth(const MeasuredBrdf& f) {
-  const auto at = [&](double theta_h) -> double {
-    const Vec3d h(std::sin(theta_h), 0, std::cos(theta_h)), side(0, std::sin(0.2), 0);
+  double most = 0, half_width = 1;
+  std::vector<std::pair<double, double>> profile;
+  for (double theta = 1e-4; theta < 1; theta *= 1.05) {
+    const Vec3d h(std::sin(theta), 0, std::cos(theta)), side(0, std::sin(0.2), 0);
     const Vec3d up = std::cos(0.2) * h;
-    return f.Value(up + side, up - side).mean();
-  };
-  const double peak = at(0);
-  double theta = 1e-4;
-  while (theta < 1 && at(theta) > 0.5 * peak) theta *= 1.05;
-  return theta;
+    profile.emplace_back(theta, f.Value(up + side, up - side).mean());
+    most = std::max(most, profile.back().second);
+  }
+  while (most > 0 && profile.back().second <= 0.5 * most) {
+    half_width = profile.back().first;
+    profile.pop_back();
+  }
+  return half_width;
 }
 
 }  // namespace
@@ -114,9 +118,8 @@ std::string MeasuredBrdf::Problem(Coordinates coordinates, const Axes& axes,
     return std::to_string(values.size()) + " values, expected " + std::to_string(count) + " from its axes";
   }
   for (size_t i = 0; i < count; ++i) {
-    if (!(values[i] >= 0 && std::isfinite(values[i]))) {
-      return "value " + std::to_string(i) + " is " + std::to_string(values[i]) +
-             ", expected finite ones of at least 0";
+    if (!(values[i] >= 0 && values[i] <= kMostValue)) {
+      return "value " + std::to_string(i) + " is " + std::to_string(values[i]) + ", expected 0 to 1e9 sr^-1";
     }
   }
   if (!angles) return "";

@@ -26,6 +26,7 @@ class MeasuredBrdf {
     /// exchanging them changes nothing.
     kIncidentOutgoing,
   };
+  static constexpr float kMostValue = 1e9f;  ///< sr^-1; brighter peaks are mistakes, and their sums overflow
   using Axes = std::array<std::vector<float>, 3>;  ///< radians, rising
 
   /// One sentence about what the constructor would not take, or "".

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <numbers>
@@ -127,8 +126,8 @@ class Table {
         }
         row.angles[i] = number;
       } else {
-        if (!(number >= 0 && std::isfinite(float(number)))) {
-          Fail(line, "f_r is " + shown + ", expected a finite number of at least 0");
+        if (!(number >= 0 && number <= MeasuredBrdf::kMostValue)) {
+          Fail(line, "f_r is " + shown + ", expected 0 to 1e9 sr^-1");
         }
         row.values[i - 3] = number;
       }

@@ -64,8 +64,10 @@ Measured ReadMerlFile(const std::string& path) {
   const auto stored = [&](int channel, size_t bin) {
     double value;
     std::memcpy(&value, &bytes[kHeader + (channel * kBins + bin) * sizeof value], sizeof value);
-    if (!std::isfinite(float(value))) {
-      what << "value " << bin << " of channel " << channel << " is " << value << ", expected a finite number";
+    // Also not a number.
+    if (!(value * kMerlScale[channel] <= MeasuredBrdf::kMostValue && std::isfinite(value))) {
+      what << "value " << bin << " of channel " << channel << " is " << value
+           << ", expected a number that stands for at most 1e9 sr^-1";
       throw InputError(what.str());
     }
     return value;

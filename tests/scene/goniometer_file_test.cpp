@@ -100,7 +100,7 @@ TEST(GoniometerFileTest, GapsDisorderAndRubbishAreRefusedByTheirLine) {
   refused(small + "60 60 190 1\n", {"line 9: dphi is 190, expected 0 to 180"});
   refused("0 95 0 1\n", {"line 1: theta_o is 95, expected 0 to 90"});
   refused("-1 0 0 1\n", {"line 1: theta_i is -1"});
-  refused("0 0 0 -0.5\n", {"line 1: f_r is -0.5, expected a finite number of at least 0"});
+  refused("0 0 0 -0.5\n", {"line 1: f_r is -0.5, expected 0 to 1e9"});
   refused("0 0 0 nan\n", {"line 1: f_r is nan"});
   refused("0 0 0 1e300\n", {"line 1: f_r is 1e300"});
   refused("0 0 0 1\n0 0 x 1\n", {"line 2: 'x' found, expected a number"});
