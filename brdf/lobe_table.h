@@ -8,6 +8,7 @@
 
 #include "brdf/hemisphere_integral.h"
 #include "brdf/incidence_spline.h"
+#include "brdf/rgb.h"
 
 namespace lobe {
 
@@ -30,6 +31,8 @@ struct FineAngle {
 
 /// A scalar reflectance f(wi, wo) in sr^-1, local frame, without the cosine.
 using ScalarBrdf = std::function<double(const Vec3d& wi, const Vec3d& wo)>;
+/// Three at once, for data whose channels go different ways.
+using RgbBrdf = std::function<Rgb(const Vec3d& wi, const Vec3d& wo)>;
 
 /// f projected into lobes: for each incident angle the cos-weighted least-squares fit of f over wo
 /// (docs/conventions.md#projection). Isotropy leaves only cos(m phi) terms at incident azimuth 0.
@@ -58,8 +61,14 @@ struct ScalarTable {
   /// (equal knots), of which it is part.
   double ErrorWithin(const ScalarTable& whole, int l) const;
 
+  /// The table of `factor` f.
+  ScalarTable Scaled(double factor) const;
+
   /// Builds at degree l_max with `knots` knots (0: DefaultKnots). `rule.width` must suit f.
   static ScalarTable Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots = 0);
+  /// One table a channel; f is asked once for all.
+  static std::vector<ScalarTable> BuildChannels(const RgbBrdf& f, int l_max, const HalfVectorRule& rule,
+                                                int knots = 0);
   /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
   static int DefaultKnots(int l_max) { return 16 + l_max; }
 };

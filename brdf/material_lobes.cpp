@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include "sh/lobe.h"
 #include "sh/zernike.h"
@@ -16,11 +15,9 @@ namespace {
 constexpr int kBaseDegreeCap = 8;
 constexpr double kBaseError = 0.01;
 
-std::string Key(const char* model, double parameter, int l_max, int knots) {
-  std::ostringstream key;
-  key.precision(9);
-  key << model << ' ' << parameter << ' ' << l_max << ' ' << knots;
-  return key.str();
+// A table depends on its recipe, its degree and the spline's knots.
+std::string TableKey(const std::string& recipe, int l_max, const IncidenceSpline& spline) {
+  return recipe + " to " + std::to_string(l_max) + " at " + std::to_string(spline.knots());
 }
 
 // What the spline's flux lacks of the albedo, at each sample of the fine grid.
@@ -114,6 +111,13 @@ std::shared_ptr<const SchlickTables> TableCache::Get(const std::string& key,
   return tables;
 }
 
+std::shared_ptr<const std::vector<ScalarTable>> TableCache::GetPlain(
+    const std::string& key, const std::function<std::vector<ScalarTable>()>& build) {
+  auto& tables = plain_tables_[key];
+  if (!tables) tables = std::make_shared<std::vector<ScalarTable>>(build());
+  return tables;
+}
+
 Rgb PartLobes::Albedo(float cos_theta_i) const {
   if (l_max < 0) return Rgb::Zero();
   const FineAngle at(cos_theta_i);
@@ -130,94 +134,102 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   const int knots = ScalarTable::DefaultKnots(std::max(cap, kBaseDegreeCap));
   spline_ = std::make_shared<IncidenceSpline>(knots);
 
-  // The gloss f (plain + rising (1 - V.H)^5). Phong and Ward do not rise.
-  const auto gloss_from = [&](const char* model, double parameter, double width, const ScalarBrdf& f,
-                              const Rgb& plain, const Rgb& rising) {
-    if ((plain <= 0).all() && (rising <= 0).all()) return;
-    const auto tables = cache.Get(Key(model, parameter, cap, knots), [&] {
-      return SchlickTables::Build(f, cap, HalfVectorRule{.width = width}, knots);
-    });
-    // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
-    // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
-    gloss.l_max = DegreeWithin(tables->plain, options);
-    const bool within = tables->plain.Error(gloss.l_max) <= options.error || options.force_l_max >= 0;
-    kind_ = within ? GlossKind::kLobe : GlossKind::kSharp;
-    gloss.error = tables->Mix(plain.mean(), rising.mean()).Error(gloss.l_max);
-    for (int c = 0; c < 3; ++c) SetChannel(gloss, c, *spline_, tables->Mix(plain[c], rising[c]));
-  };
-
   if (const auto* lambert = std::get_if<Lambert>(&reflectance)) {
     diffuse_albedo_ = LambertPart(base, lambert->albedo);
-  } else if (const auto* phong = std::get_if<Phong>(&reflectance)) {
-    const Reflectance white = Phong{Rgb::Constant(1), phong->exponent};
-    gloss_from(
-        "phong", phong->exponent, std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
-        [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
-        phong->albedo, Rgb::Zero());
-  } else if (const auto* ward = std::get_if<Ward>(&reflectance)) {
-    const Reflectance white = Ward{Rgb::Constant(1), ward->alpha};
-    gloss_from(
-        "ward", ward->alpha, std::min(1.0f, ward->alpha),
-        [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
-        ward->albedo, Rgb::Zero());
   } else if (const auto* gltf = std::get_if<MetallicRoughness>(&reflectance)) {
-    const Rgb f0 = gltf->F0();
-    const float f90 = gltf->F90();
-    const bool coated = (f0 > 0).any() || f90 > 0;
-
-    // Base: c_diff / pi (1 - F), F = f0 + (f90 - f0)(1 - V.H)^5 (of the largest channel with
-    // KHR_materials_specular). A constant and one universal table. What passes to the other side is weighed
-    // by the same coat, so its albedo comes from the same table.
-    const Rgb diffuse = gltf->DiffuseColor(), passed = gltf->TransmissionColor();
-    const Rgb f0_base = gltf->has_specular ? Rgb::Constant(f0.maxCoeff()) : f0;
-    const Rgb constant = diffuse * (1 - f0_base), slope = diffuse * (f90 - f0_base);
-    transmits_ = Transmits(reflectance);
-    transmission_constant_ = passed * (1 - f0_base);
-    transmission_slope_ = passed * (f90 - f0_base);
-    const bool sloped_transmission = transmits_ && (transmission_slope_.abs() >= 1e-7f).any();
-    const bool sloped = (slope.abs() >= 1e-7f).any();
-    std::shared_ptr<const SchlickTables> white;
-    if (sloped || sloped_transmission) {
-      white = cache.Get(Key("lambert", 0, kBaseDegreeCap, knots), [&] {
-        return SchlickTables::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
-                                    kBaseDegreeCap, HalfVectorRule{.width = 1.0}, knots);
-      });
-    }
-    if (sloped_transmission) {
-      for (const double albedo : white->rising.albedo) fresnel_albedo_.push_back(float(albedo));
-    }
-    if (!sloped) {
-      if ((diffuse > 0).any() || !coated || transmits_) diffuse_albedo_ = LambertPart(base, constant);
-    } else {
-      // Only the Fresnel part is cut; the steepest channel decides.
-      int steepest = 0;
-      (slope / constant.max(1e-6f)).maxCoeff(&steepest);
-      const auto whole = white->Mix(constant[steepest], -slope[steepest]);
-      const auto error = [&](int l) { return slope[steepest] * white->rising.ErrorWithin(whole, l); };
-      base.l_max = 0;
-      while (base.l_max < base_cap && error(base.l_max) > kBaseError) ++base.l_max;
-      base.error = error(base.l_max);
-      for (int c = 0; c < 3; ++c) {
-        SetChannel(base, c, *spline_, white->Mix(constant[c], -slope[c]));
-      }
-    }
-
-    if (coated && gltf->roughness < kMirrorRoughness) {
-      kind_ = GlossKind::kMirror;
-    } else if (coated) {
-      const double alpha = double(gltf->roughness) * gltf->roughness;
-      gloss_from(
-          "ggx", gltf->roughness, alpha,
-          [alpha](const Vec3d& wi, const Vec3d& wo) {
-            const Vec3d h = (wi + wo).normalized();
-            return GgxD(h.z(), alpha) * GgxV(wi.z(), wo.z(), alpha);
-          },
-          f0, f90 - f0);
-    }
+    SetMetallicRoughnessBase(*gltf, base_cap, cache);
+  } else if (const auto* oren = std::get_if<OrenNayar>(&reflectance); oren && oren->sigma == 0) {
+    diffuse_albedo_ = LambertPart(base, oren->albedo);
   }
+  if (const auto recipe = BaseRecipe(reflectance)) SetBase(*recipe, base_cap, cache);
+  if (const auto recipe = GlossRecipe(reflectance)) SetGloss(*recipe, cap, options, cache);
   const bool lambertian_base = base.l_max < 0 || base.control[0].empty();
   diffuse_ = gloss.l_max < 0 && lambertian_base;
   if (!diffuse_ && lambertian_base) SplineOfLambert(base, *spline_);
+}
+
+// The base of glTF: c_diff / pi (1 - F), F = f0 + (f90 - f0)(1 - V.H)^5 (of the largest channel with
+// KHR_materials_specular). A constant and one universal table. What passes to the other side is weighed by
+// the same coat, so its albedo comes from the same table.
+void MaterialLobes::SetMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache) {
+  const Rgb f0 = gltf.F0();
+  const float f90 = gltf.F90();
+  const bool coated = (f0 > 0).any() || f90 > 0;
+  const Rgb diffuse = gltf.DiffuseColor(), passed = gltf.TransmissionColor();
+  const Rgb f0_base = gltf.has_specular ? Rgb::Constant(f0.maxCoeff()) : f0;
+  const Rgb constant = diffuse * (1 - f0_base), slope = diffuse * (f90 - f0_base);
+  if (coated && gltf.roughness < kMirrorRoughness) kind_ = GlossKind::kMirror;
+  transmits_ = Transmits(reflectance_);
+  transmission_constant_ = passed * (1 - f0_base);
+  transmission_slope_ = passed * (f90 - f0_base);
+  const bool sloped_transmission = transmits_ && (transmission_slope_.abs() >= 1e-7f).any();
+  const bool sloped = (slope.abs() >= 1e-7f).any();
+  std::shared_ptr<const SchlickTables> white;
+  if (sloped || sloped_transmission) {
+    white = cache.Get(TableKey("lambert", kBaseDegreeCap, *spline_), [&] {
+      return SchlickTables::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
+                                  kBaseDegreeCap, HalfVectorRule{.width = 1.0}, spline_->knots());
+    });
+  }
+  if (sloped_transmission) {
+    for (const double albedo : white->rising.albedo) fresnel_albedo_.push_back(float(albedo));
+  }
+  if (!sloped) {
+    if ((diffuse > 0).any() || !coated || transmits_) diffuse_albedo_ = LambertPart(base, constant);
+    return;
+  }
+  // Only the Fresnel part is cut; the steepest channel decides.
+  int steepest = 0;
+  (slope / constant.max(1e-6f)).maxCoeff(&steepest);
+  const auto whole = white->Mix(constant[steepest], -slope[steepest]);
+  const auto error = [&](int l) { return slope[steepest] * white->rising.ErrorWithin(whole, l); };
+  base.l_max = 0;
+  while (base.l_max < cap && error(base.l_max) > kBaseError) ++base.l_max;
+  base.error = error(base.l_max);
+  for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, white->Mix(constant[c], -slope[c]));
+}
+
+void MaterialLobes::SetBase(const LobeRecipe& recipe, int cap, TableCache& cache) {
+  const auto tables = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap, *spline_), [&] {
+    ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule, spline_->knots());
+    for (int i = 0; recipe.albedo && i <= ScalarTable::kFine; ++i) {
+      built.albedo[i] = recipe.albedo(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
+    }
+    return std::vector<ScalarTable>{std::move(built)};
+  });
+  const ScalarTable& table = tables->front();
+  base.l_max = 0;
+  while (base.l_max < cap && table.Error(base.l_max) > kBaseError) ++base.l_max;
+  base.error = table.Error(base.l_max);
+  for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, table.Scaled(recipe.plain[c]));
+}
+
+void MaterialLobes::SetGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options,
+                             TableCache& cache) {
+  const std::string key = TableKey(recipe.key, cap, *spline_);
+  bool within = true;
+  if (recipe.channels) {
+    const auto tables = cache.GetPlain(
+        key, [&] { return ScalarTable::BuildChannels(recipe.channels, cap, recipe.rule, spline_->knots()); });
+    for (const ScalarTable& table : *tables)
+      gloss.l_max = std::max(gloss.l_max, DegreeWithin(table, options));
+    for (int c = 0; c < 3; ++c) {
+      gloss.error = std::max(gloss.error, (*tables)[c].Error(gloss.l_max));
+      SetChannel(gloss, c, *spline_, (*tables)[c]);
+    }
+    within = gloss.error <= options.error;
+  } else {
+    const auto tables =
+        cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule, spline_->knots()); });
+    // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
+    // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
+    gloss.l_max = DegreeWithin(tables->plain, options);
+    gloss.error = tables->Mix(recipe.plain.mean(), recipe.rising.mean()).Error(gloss.l_max);
+    for (int c = 0; c < 3; ++c)
+      SetChannel(gloss, c, *spline_, tables->Mix(recipe.plain[c], recipe.rising[c]));
+    within = tables->plain.Error(gloss.l_max) <= options.error;
+  }
+  kind_ = within || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
 }
 
 Rgb MaterialLobes::Albedo(float cos_theta_i) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "brdf/incidence_spline.h"
+#include "brdf/lobe_recipe.h"
 #include "brdf/lobe_table.h"
 #include "brdf/reflectance.h"
 
@@ -16,7 +17,7 @@ namespace lobe {
 
 /// What a material's gloss costs (DESIGN 3). Base, the diffuse part under it, is apart.
 enum class GlossKind {
-  kNone,    ///< diffuse: one coefficient
+  kNone,    ///< none: Lambert's one coefficient, or a base that varies (Oren-Nayar)
   kLobe,    ///< within tolerance under the cap
   kSharp,   ///< beyond it: a capped lobe whose energy is right carries light onwards
   kMirror,  ///< no lobe, only recursion
@@ -37,9 +38,9 @@ struct LobeOptions {
 /// One part (base or gloss) of a material as lobes, three channels.
 struct PartLobes {
   int l_max = -1;  ///< -1: the part is black
-  /// Flux-weighted error of the degree taken (docs/conventions.md#basis), 0 when exact. For GGX the degree is
-  /// chosen on F = 1, by roughness alone; this is the error with the material's own Fresnel, larger for
-  /// dielectrics.
+  /// Flux-weighted error of the degree taken (docs/conventions.md#basis), 0 when exact. Under a coat the
+  /// degree is chosen on F = 1, by roughness alone; this is the error with the material's own Fresnel, larger
+  /// for dielectrics. Of measured channels, which have tables of their own, the largest.
   double error = 0;
   /// Control values over the incidence spline, control[c][bin * RowCount() + Row(l, m)], m >= 0: the H_lm
   /// coefficients of the light leaving for irradiance 1 at incident azimuth 0.
@@ -63,9 +64,13 @@ class TableCache {
  public:
   std::shared_ptr<const SchlickTables> Get(const std::string& key,
                                            const std::function<SchlickTables()>& build);
+  /// The same for what has no coat's Fresnel: one table, or one a channel.
+  std::shared_ptr<const std::vector<ScalarTable>> GetPlain(
+      const std::string& key, const std::function<std::vector<ScalarTable>()>& build);
 
  private:
   std::map<std::string, std::shared_ptr<const SchlickTables>> tables_;
+  std::map<std::string, std::shared_ptr<const std::vector<ScalarTable>>> plain_tables_;
 };
 
 /// Everything transport needs to know of a material's reflection and transmission.
@@ -100,6 +105,10 @@ class MaterialLobes {
   PartLobes base, gloss;
 
  private:
+  void SetMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache);
+  void SetBase(const LobeRecipe& recipe, int cap, TableCache& cache);
+  void SetGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options, TableCache& cache);
+
   GlossKind kind_ = GlossKind::kNone;
   Reflectance reflectance_;
   bool diffuse_ = true, glass_ = false;

@@ -33,7 +33,23 @@ struct Base {
   Rgb operator()(const MetallicRoughness& m) const {
     return m.DiffuseColor() * UnderTheCoat(m, wi, wo) / float(kPi);
   }
+  Rgb operator()(const BlinnPhong&) const { return Rgb::Zero(); }
+  Rgb operator()(const CookTorrance&) const { return Rgb::Zero(); }
+  Rgb operator()(const OrenNayar& m) const {
+    const double sigma = m.sigma;
+    return m.albedo * float(OrenNayar::White<double>(wi, wo, OrenNayar::A(sigma), OrenNayar::B(sigma)));
+  }
+  Rgb operator()(const AshikhminShirley& m) const {
+    return m.diffuse * (1 - m.specular) * float(AshikhminShirley::WhiteBase(wi.z(), wo.z()));
+  }
+  Rgb operator()(const Plastic& m) const {
+    return m.BaseScale() * (m.Through(float(wi.z())) * m.Through(float(wo.z())));
+  }
+  Rgb operator()(const Measured&) const { return Rgb::Zero(); }
 };
+
+// f0 + (1 - f0) rise.
+Rgb Schlick(const Rgb& f0, double cos_d) { return f0 + (1 - f0) * float(SchlickRise(cos_d)); }
 
 struct Gloss {
   const Vec3d &wi, &wo;
@@ -59,6 +75,65 @@ struct Gloss {
     const Vec3d h = (wi + wo).normalized();
     return m.Fresnel(float(std::abs(wi.dot(h)))) * float(GgxD(h.z(), alpha) * GgxV(wi.z(), wo.z(), alpha));
   }
+  Rgb operator()(const BlinnPhong& m) const {
+    return m.albedo * float(BlinnPhong::White(HalfAngles<double>(wi, wo), double(m.exponent)));
+  }
+  Rgb operator()(const CookTorrance& m) const {
+    const HalfAngles<double> h(wi, wo);
+    return Schlick(m.f0, h.cos_d) * float(CookTorrance::White(h, wi.z(), wo.z(), double(m.alpha)));
+  }
+  Rgb operator()(const OrenNayar&) const { return Rgb::Zero(); }
+  Rgb operator()(const AshikhminShirley& m) const {
+    const HalfAngles<double> h(wi, wo);
+    const double white = AshikhminShirley::WhiteGloss(h, wi.z(), wo.z(), double(m.exponent));
+    return Schlick(m.specular, h.cos_d) * float(white);
+  }
+  Rgb operator()(const Plastic& m) const {
+    const double alpha = double(m.roughness()) * m.roughness();
+    const HalfAngles<double> h(wi, wo);
+    return Schlick(Rgb::Constant(m.F0()), h.cos_d) *
+           float(GgxD(h.cos_h(), alpha) * GgxV(wi.z(), wo.z(), alpha));
+  }
+  Rgb operator()(const Measured& m) const { return m.data->Value(wi, wo); }
+};
+
+struct Normal {
+  template <typename Model>
+  Rgb operator()(const Model& m) const {
+    return m.albedo;
+  }
+  Rgb operator()(const MetallicRoughness& m) const { return m.F0() + m.UnderCoat(m.F0()) * m.DiffuseColor(); }
+  Rgb operator()(const CookTorrance& m) const { return m.f0; }
+  Rgb operator()(const AshikhminShirley& m) const {
+    return m.specular + m.diffuse * (1 - m.specular) * AshikhminShirley::BaseFactor(1.0f);
+  }
+  // The smooth coat's f0, and the base of a smooth coat: T (1 - R_in) rho / (1 - rho R_in).
+  Rgb operator()(const Plastic& m) const {
+    const float inner = m.InnerReflectance();
+    return m.F0() + (1 - m.F0()) * (1 - inner) * m.albedo() / (1 - m.albedo() * inner);
+  }
+  Rgb operator()(const Measured& m) const { return m.data->NormalAlbedo(); }
+};
+
+struct Words {
+  std::ostream& out;
+
+  void operator()(const Lambert&) const { out << "lambert"; }
+  void operator()(const Phong& m) const { out << "phong exponent " << m.exponent; }
+  void operator()(const Ward& m) const { out << "ward alpha " << m.alpha; }
+  void operator()(const MetallicRoughness& m) const {
+    out << "ggx roughness " << m.roughness;
+    if (m.metallic < 1) out << " metallic " << m.metallic;
+    if (IsGlass(m)) out << (m.thickness > 0 ? " glass ior " : " pane ior ") << m.ior;
+  }
+  void operator()(const BlinnPhong& m) const { out << "blinn-phong exponent " << m.exponent; }
+  void operator()(const CookTorrance& m) const { out << "cook-torrance alpha " << m.alpha; }
+  void operator()(const OrenNayar& m) const { out << "oren-nayar sigma " << m.sigma; }
+  void operator()(const AshikhminShirley& m) const { out << "ashikhmin-shirley exponent " << m.exponent; }
+  void operator()(const Plastic& m) const {
+    out << "plastic ior " << m.ior() << " roughness " << m.roughness();
+  }
+  void operator()(const Measured& m) const { out << "measured " << m.data->name(); }
 };
 
 }  // namespace
@@ -118,48 +193,11 @@ bool IsGlass(const Reflectance& r) {
   return m && m->roughness < kMirrorRoughness && (m->GlassColor() * m->UnderCoat(m->F0()) > 0).any();
 }
 
-Rgb NormalAlbedo(const Reflectance& r) {
-  if (const auto* m = std::get_if<MetallicRoughness>(&r)) {
-    return m->F0() + m->UnderCoat(m->F0()) * m->DiffuseColor();
-  }
-  return std::visit(
-      [](const auto& model) {
-        if constexpr (requires { model.albedo; }) return model.albedo;
-        return Rgb(Rgb::Zero());  // unreachable: metallic-roughness came first
-      },
-      r);
-}
-
-double GgxD(double cos_h, double alpha) {
-  if (cos_h <= 0) return 0;
-  const double a2 = alpha * alpha;
-  // sin^2 + a^2 cos^2, rather than cos^2 (a^2 - 1) + 1, which cancels for small alpha.
-  const double s = (1.0 - cos_h) * (1.0 + cos_h) + a2 * cos_h * cos_h;
-  return a2 / (kPi * s * s);
-}
-
-double GgxV(double cos_i, double cos_o, double alpha) {
-  if (cos_i <= 0 || cos_o <= 0) return 0;
-  const double a2 = alpha * alpha;
-  const double shadowed = cos_i * std::sqrt(a2 + (1.0 - a2) * cos_o * cos_o);
-  const double masked = cos_o * std::sqrt(a2 + (1.0 - a2) * cos_i * cos_i);
-  return 0.5 / (shadowed + masked);
-}
+Rgb NormalAlbedo(const Reflectance& r) { return std::visit(Normal{}, r); }
 
 std::string Describe(const Reflectance& r) {
   std::ostringstream words;
-  if (std::holds_alternative<Lambert>(r)) {
-    words << "lambert";
-  } else if (const auto* phong = std::get_if<Phong>(&r)) {
-    words << "phong exponent " << phong->exponent;
-  } else if (const auto* ward = std::get_if<Ward>(&r)) {
-    words << "ward alpha " << ward->alpha;
-  } else {
-    const auto& m = std::get<MetallicRoughness>(r);
-    words << "ggx roughness " << m.roughness;
-    if (m.metallic < 1) words << " metallic " << m.metallic;
-    if (IsGlass(r)) words << (m.thickness > 0 ? " glass ior " : " pane ior ") << m.ior;
-  }
+  std::visit(Words{words}, r);
   return words.str();
 }
 

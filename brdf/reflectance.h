@@ -4,14 +4,22 @@
 #include <string>
 #include <variant>
 
+#include "brdf/ashikhmin_shirley.h"
+#include "brdf/blinn_phong.h"
+#include "brdf/cook_torrance.h"
+#include "brdf/measured.h"
+#include "brdf/microfacet.h"
+#include "brdf/oren_nayar.h"
+#include "brdf/plastic.h"
 #include "brdf/rgb.h"
 #include "sh/vector.h"
 
 namespace lobe {
 
-/// Closed-form reflectance models. All are isotropic, live in a surface's local frame (z the normal)
-/// and return f_r in sr^-1 without the cosine. `wi` and `wo` are unit vectors pointing away from the
-/// surface; at or below the horizon f_r is 0. Double precision: these feed quadratures and tests.
+/// Reflectance models; those with a file of their own say there what they are. All are isotropic, live in a
+/// surface's local frame (z the normal) and return f_r in sr^-1 without the cosine. `wi` and `wo` are unit
+/// vectors pointing away from the surface; at or below the horizon f_r is 0. Double precision: these feed
+/// quadratures and tests.
 
 /// f_r = albedo / pi.
 struct Lambert {
@@ -71,14 +79,16 @@ struct MetallicRoughness {
   Rgb UnderCoat(const Rgb& fresnel) const;
 };
 
-using Reflectance = std::variant<Lambert, Phong, Ward, MetallicRoughness>;
+using Reflectance = std::variant<Lambert, Phong, Ward, MetallicRoughness, BlinnPhong, CookTorrance, OrenNayar,
+                                 AshikhminShirley, Plastic, Measured>;
 
 /// Roughness below this is an ideal mirror: no gloss lobe, only recursion.
 inline constexpr float kMirrorRoughness = 0.01f;
 
-/// Diffuse reflection under the coat: all of Lambert, none of Phong and Ward.
+/// Diffuse reflection, under the coat if there is one: all of Lambert and Oren-Nayar, none of the Phongs,
+/// Ward, Cook-Torrance and what is measured.
 Rgb EvaluateBase(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
-/// The coat. Zero for Lambert and for an ideal mirror, whose reflection is a delta.
+/// The rest. Zero for an ideal mirror, whose reflection is a delta.
 Rgb EvaluateGloss(const Reflectance& r, const Vec3d& wi, const Vec3d& wo);
 
 /// Lambertian transmission under the coat, f_t in sr^-1 without the cosine: light arrives along `wi`, above
@@ -93,13 +103,8 @@ bool Transmits(const Reflectance& r);
 bool IsGlass(const Reflectance& r);
 
 /// What a smooth surface of these colours reflects at normal incidence: coat and base without the shadowing
-/// of rough ones. The colour of a material in one triple.
+/// of rough ones; of measured ones, all that they do. The colour of a material in one triple.
 Rgb NormalAlbedo(const Reflectance& r);
-
-/// GGX distribution (Walter et al., EGSR 2007, eq. 33) at half-vector cosine `cos_h`, sr^-1.
-double GgxD(double cos_h, double alpha);
-/// V = G2 / (4 cos_i cos_o), Smith.
-double GgxV(double cos_i, double cos_o, double alpha);
 
 /// Words for messages and `lobe info`, such as "ggx roughness 0.4".
 std::string Describe(const Reflectance& r);

@@ -20,6 +20,11 @@ Vec3 CosineDirection(float u1, float u2) {
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u1)};
 }
 
+Vec3 UniformDirection(float u1, float u2) {  // on the hemisphere
+  const float r = std::sqrt(u1 * (2 - u1)), phi = 2 * kPi * u2;
+  return {r * std::cos(phi), r * std::sin(phi), 1 - u1};
+}
+
 Vec3 Mirrored(const Vec3& w) { return {-w.x(), -w.y(), w.z()}; }
 
 // D without its pi, from the slope side of the half vector: 1 - cos^2 would cancel in float for sharp lobes.
@@ -59,43 +64,88 @@ ReflectanceSampler::ReflectanceSampler(const Reflectance& r) {
     width_ = ward->alpha;
     gloss_ = ward->albedo;
   } else if (const auto* m = std::get_if<MetallicRoughness>(&r)) {
-    f0_ = m->F0();
-    f90_less_f0_ = m->F90() - f0_;
-    under_coat_by_max_ = m->has_specular;
-    const Rgb through = UnderCoat(f0_);
-    for (int c = 0; c < 3; ++c) {
-      base_[c] = through[c] > 0 ? base_[c] / through[c] : 0;
-      transmission_[c] = through[c] > 0 ? transmission_[c] / through[c] : 0;
-    }
-    if ((f0_ > 0).any() || m->F90() > 0) kind_ = m->roughness < kMirrorRoughness ? Kind::kMirror : Kind::kGgx;
-    width_ = m->roughness * m->roughness;
+    SetMetallicRoughness(*m);
+  } else if (const auto* blinn = std::get_if<BlinnPhong>(&r)) {
+    kind_ = Kind::kBlinnPhong;
+    width_ = blinn->exponent;
+    gloss_ = blinn->albedo * BlinnPhong::Factor(width_);
+    cosine_chance_ = std::clamp(2 / (width_ + 2), 0.05f, 1.0f);
+  } else if (const auto* cook = std::get_if<CookTorrance>(&r)) {
+    kind_ = Kind::kCookTorrance;
+    width_ = cook->alpha;
+    f0_ = cook->f0;
+    f90_less_f0_ = 1 - f0_;
+  } else if (const auto* oren = std::get_if<OrenNayar>(&r)) {
+    base_kind_ = BaseKind::kOrenNayar;
+    base_ = oren->albedo * kInvPi;
+    oren_a_ = OrenNayar::A(oren->sigma);
+    oren_b_ = OrenNayar::B(oren->sigma);
+  } else if (const auto* ashikhmin = std::get_if<AshikhminShirley>(&r)) {
+    kind_ = Kind::kAshikhminShirley;
+    base_kind_ = BaseKind::kAshikhminShirley;
+    width_ = ashikhmin->exponent;
+    f0_ = ashikhmin->specular;
+    f90_less_f0_ = 1 - f0_;
+    base_ = ashikhmin->diffuse * (1 - f0_) * kInvPi;
+  } else if (const auto* plastic = std::get_if<Plastic>(&r)) {
+    SetPlastic(*plastic);
+  } else if (const auto* measured = std::get_if<Measured>(&r)) {
+    kind_ = Kind::kMeasured;
+    measured_ = std::make_shared<const MeasuredSampler>(measured->data);
   }
   width2_ = width_ * width_;
   base_mean_ = base_.mean() * kPi;
   transmission_mean_ = transmission_.mean() * kPi;
   if (const float sum = base_mean_ + transmission_mean_; sum > 0) {
     // Of half vectors the diffuse parts meet few at grazing, whatever wo: their albedo hardly falls there.
-    diffuse_mean_ = sum * (1 - f0_.mean());
+    diffuse_mean_ = base_kind_ == BaseKind::kUnderCoat ? sum * (1 - f0_.mean()) : sum;
     diffuse_chance_ = base_mean_ / sum;
     transmission_chance_ = transmission_mean_ / sum;
   }
-  if (kind_ == Kind::kGgx) {
-    constexpr int kSide = 12;  // squared, directions an angle: a few percent, which is plenty for a chance
-    for (int i = 0; i <= kAngles; ++i) {
-      const float cos_o = std::max(float(i) / kAngles, 1e-3f);
-      const Vec3 wo(std::sqrt(1 - cos_o * cos_o), 0, cos_o);
-      float sum = 0;
-      for (int j = 0; j < kSide * kSide; ++j) {
-        const Vec3 h =
-            VisibleHalfVector(wo, (float(j % kSide) + 0.5f) / kSide, (float(j / kSide) + 0.5f) / kSide);
-        const float cos_h = wo.dot(h), cos_i = 2 * cos_h * h.z() - cos_o;
-        if (!(cos_i > 0)) continue;
-        // F G2 / G1.
-        sum += Fresnel(cos_h).mean() * 2 * cos_i * GgxVisibility(cos_i, cos_o, width2_) *
-               SmithSum(cos_o, width2_);
-      }
-      gloss_albedo_[i] = sum / (kSide * kSide);
+  if (kind_ == Kind::kGgx) TabulateGlossAlbedo();
+}
+
+void ReflectanceSampler::SetMetallicRoughness(const MetallicRoughness& m) {
+  f0_ = m.F0();
+  f90_less_f0_ = m.F90() - f0_;
+  under_coat_by_max_ = m.has_specular;
+  const Rgb through = UnderCoat(f0_);
+  for (int c = 0; c < 3; ++c) {
+    base_[c] = through[c] > 0 ? base_[c] / through[c] : 0;
+    transmission_[c] = through[c] > 0 ? transmission_[c] / through[c] : 0;
+  }
+  if ((f0_ > 0).any() || m.F90() > 0) kind_ = m.roughness < kMirrorRoughness ? Kind::kMirror : Kind::kGgx;
+  width_ = m.roughness * m.roughness;
+}
+
+void ReflectanceSampler::SetPlastic(const Plastic& m) {
+  kind_ = Kind::kGgx;
+  base_kind_ = BaseKind::kPlastic;
+  width_ = m.roughness() * m.roughness();
+  f0_ = Rgb::Constant(m.F0());
+  f90_less_f0_ = 1 - f0_;
+  // For chances: what leaves at normal incidence of light from everywhere, T(0) times the mean of T.
+  base_ = m.BaseScale() * (m.Through(1) * m.ior() * m.ior() * (1 - m.InnerReflectance()));
+  plastic_ = std::make_shared<const Plastic>(m);
+}
+
+// A few percent, which is plenty for a chance.
+void ReflectanceSampler::TabulateGlossAlbedo() {
+  constexpr int kSide = 12;  // squared, directions an angle
+  for (int i = 0; i <= kAngles; ++i) {
+    const float cos_o = std::max(float(i) / kAngles, 1e-3f);
+    const Vec3 wo(std::sqrt(1 - cos_o * cos_o), 0, cos_o);
+    float sum = 0;
+    for (int j = 0; j < kSide * kSide; ++j) {
+      const Vec3 h =
+          VisibleHalfVector(wo, (float(j % kSide) + 0.5f) / kSide, (float(j / kSide) + 0.5f) / kSide);
+      const float cos_h = wo.dot(h), cos_i = 2 * cos_h * h.z() - cos_o;
+      if (!(cos_i > 0)) continue;
+      // F G2 / G1.
+      sum +=
+          Fresnel(cos_h).mean() * 2 * cos_i * GgxVisibility(cos_i, cos_o, width2_) * SmithSum(cos_o, width2_);
     }
+    gloss_albedo_[i] = sum / (kSide * kSide);
   }
 }
 
@@ -116,15 +166,20 @@ Rgb ReflectanceSampler::UnderCoat(const Rgb& fresnel) const {
 }
 
 float ReflectanceSampler::GlossAlbedo(float cos_o) const {
-  if (kind_ == Kind::kMirror) return Fresnel(cos_o).mean();
+  if (kind_ != Kind::kGgx) return Fresnel(cos_o).mean();
   const float s = cos_o * kAngles;
   const int i = std::min(int(s), kAngles - 1);
   return gloss_albedo_[i] + (s - float(i)) * (gloss_albedo_[i + 1] - gloss_albedo_[i]);
 }
 
+bool ReflectanceSampler::MixesBaseAndGloss() const {
+  return (kind_ == Kind::kGgx || kind_ == Kind::kMirror || kind_ == Kind::kAshikhminShirley) &&
+         diffuse_mean_ > 0;
+}
+
 ReflectanceSampler::Chances ReflectanceSampler::ChancesAt(float cos_o) const {
   if (kind_ == Kind::kDiffuse) return {0, diffuse_chance_, transmission_chance_};
-  if (kind_ == Kind::kPhong || kind_ == Kind::kWard || diffuse_mean_ == 0) return {1, 0, 0};
+  if (!MixesBaseAndGloss()) return {1, 0, 0};
   const float gloss = GlossAlbedo(cos_o);
   // A part that is there never goes without samples: its share is an estimate.
   const float chance = std::clamp(gloss / (gloss + diffuse_mean_), 0.02f, 0.98f);
@@ -140,13 +195,51 @@ Vec3 ReflectanceSampler::VisibleHalfVector(const Vec3& wo, float u1, float u2) c
   return Vec3(h.x() * width_, h.y() * width_, std::max(h.z(), 0.0f)).normalized();
 }
 
+Rgb ReflectanceSampler::BaseValue(const Vec3& wo, const Vec3& wi, const Rgb& fresnel) const {
+  switch (base_kind_) {
+    case BaseKind::kUnderCoat:
+      return base_ * UnderCoat(fresnel);
+    case BaseKind::kOrenNayar:
+      return base_ * (kPi * OrenNayar::White<float>(wi, wo, oren_a_, oren_b_));
+    case BaseKind::kAshikhminShirley:
+      return base_ * (kPi * AshikhminShirley::WhiteBase(wi.z(), wo.z()));
+    case BaseKind::kPlastic:
+      return plastic_->BaseScale() * (plastic_->Through(wi.z()) * plastic_->Through(wo.z()));
+  }
+  return Rgb::Zero();
+}
+
+float ReflectanceSampler::BasePdf(float cos_i) const {
+  return (1 - oren_b_) * cos_i * kInvPi + oren_b_ * 0.5f * kInvPi;
+}
+
+// Gloss that is drawn by half vectors: f, and density of the half vector over 4 wo.h.
+void ReflectanceSampler::AddHalfVectorGloss(const Vec3& wo, const Vec3& wi, float chance,
+                                            ReflectanceValue* out) const {
+  const HalfAngles<float> h(wi, wo);
+  const float by_half_vector = 0.25f / h.cos_d;
+  if (kind_ == Kind::kCookTorrance) {
+    out->f += Fresnel(h.cos_d) * CookTorrance::White(h, wi.z(), wo.z(), width_);
+    out->pdf += chance * CookTorrance::BeckmannD(h, width_) * h.cos_h() * by_half_vector;
+    return;
+  }
+  const float power = h.CosinePower(width_), pdf = (width_ + 1) * 0.5f * kInvPi * power * by_half_vector;
+  if (kind_ == Kind::kBlinnPhong) {
+    out->f += gloss_ * power;
+    out->pdf += chance * ((1 - cosine_chance_) * pdf + cosine_chance_ * wi.z() * kInvPi);
+  } else {
+    out->f += Fresnel(h.cos_d) * AshikhminShirley::WhiteGloss(h, wi.z(), wo.z(), width_);
+    out->pdf += chance * pdf;
+  }
+}
+
 ReflectanceValue ReflectanceSampler::Evaluate(const Vec3& wo, const Vec3& wi) const {
   ReflectanceValue out;
   if (!(wo.z() > 0) || wi.z() == 0) return out;
   if (kind_ == Kind::kDiffuse) {
     const bool above = wi.z() > 0;
-    out.f = above ? base_ : transmission_;
-    out.pdf = (above ? diffuse_chance_ : transmission_chance_) * std::abs(wi.z()) * kInvPi;
+    out.f = !above ? transmission_ : base_kind_ == BaseKind::kUnderCoat ? base_ : BaseValue(wo, wi, f0_);
+    out.pdf = (above ? diffuse_chance_ : transmission_chance_) * BasePdf(std::abs(wi.z()));
     return out;
   }
   if (wi.z() < 0) {
@@ -163,6 +256,11 @@ ReflectanceValue ReflectanceSampler::Evaluate(const Vec3& wo, const Vec3& wi) co
     out.pdf = (width_ + 1) * power;
     return out;
   }
+  if (kind_ == Kind::kMeasured) {
+    out.f = measured_->Value(wo, wi);
+    out.pdf = measured_->Pdf(wo, wi);
+    return out;
+  }
   const Vec3 sum = wo + wi;
   if (kind_ == Kind::kWard) {
     const float hz2 = sum.z() * sum.z(), h2 = sum.squaredNorm();
@@ -177,10 +275,12 @@ ReflectanceValue ReflectanceSampler::Evaluate(const Vec3& wo, const Vec3& wi) co
   const Rgb fresnel = Fresnel(wo.dot(h));
   const Chances chances = ChancesAt(wo.z());
   if (base_mean_ > 0) {
-    out.f = base_ * UnderCoat(fresnel);
-    out.pdf = chances.base * wi.z() * kInvPi;
+    out.f = BaseValue(wo, wi, fresnel);
+    out.pdf = chances.base * BasePdf(wi.z());
   }
-  if (kind_ == Kind::kGgx) {
+  if (kind_ == Kind::kBlinnPhong || kind_ == Kind::kCookTorrance || kind_ == Kind::kAshikhminShirley) {
+    AddHalfVectorGloss(wo, wi, chances.gloss, &out);
+  } else if (kind_ == Kind::kGgx) {
     const float d = GgxDTimesPi(h, width2_) * kInvPi;
     out.f += fresnel * (d * GgxVisibility(wi.z(), wo.z(), width2_));
     out.pdf += chances.gloss * d / (2 * SmithSum(wo.z(), width2_));  // G1 D / (4 cos_o)
@@ -211,12 +311,28 @@ SampledDirection ReflectanceSampler::Sample(const Vec3& wo, float u1, float u2, 
         out.wi = (x * (sine * std::cos(phi)) + z.cross(x) * (sine * std::sin(phi)) + z * cosine).normalized();
         break;
       }
-      case Kind::kWard: {
+      case Kind::kWard:
+      case Kind::kCookTorrance: {
         const float slope = width_ * std::sqrt(-std::log1p(-u1)), phi = 2 * kPi * u2;
         const Vec3 h = Vec3(slope * std::cos(phi), slope * std::sin(phi), 1).normalized();
         out.wi = (2 * wo.dot(h) * h - wo).normalized();
         break;
       }
+      case Kind::kBlinnPhong:
+      case Kind::kAshikhminShirley: {
+        if (u3 < cosine_chance_) {
+          out.wi = CosineDirection(u1, u2);
+          break;
+        }
+        const float log_cos = std::log1p(-u1) / (width_ + 1), phi = 2 * kPi * u2;
+        const float less = -std::expm1(log_cos), sine = std::sqrt(less * (2 - less));
+        const Vec3 h(sine * std::cos(phi), sine * std::sin(phi), 1 - less);
+        out.wi = (2 * wo.dot(h) * h - wo).normalized();
+        break;
+      }
+      case Kind::kMeasured:
+        out.wi = measured_->Sample(wo, u1, u2, u3);
+        break;
       case Kind::kGgx: {
         const Vec3 h = VisibleHalfVector(wo, u1, u2);
         out.wi = (2 * wo.dot(h) * h - wo).normalized();
@@ -227,7 +343,9 @@ SampledDirection ReflectanceSampler::Sample(const Vec3& wo, float u1, float u2, 
   } else {
     const bool through = u3 >= chances.gloss + chances.base;
     if ((through ? chances.transmission : chances.base) == 0) return out;  // black, or u3 at a rounding error
-    out.wi = CosineDirection(u1, u2);
+    // Places of u3 within [gloss, gloss + base) choose between Oren-Nayar's two shares.
+    const bool uniform = oren_b_ > 0 && (u3 - chances.gloss) < oren_b_ * chances.base;
+    out.wi = uniform ? UniformDirection(u1, u2) : CosineDirection(u1, u2);
     if (through) out.wi.z() = -out.wi.z();
   }
   const ReflectanceValue value = Evaluate(wo, out.wi);

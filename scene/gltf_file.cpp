@@ -15,6 +15,7 @@
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_json.h"
 #include "scene/input_error.h"
+#include "scene/uri.h"
 
 namespace lobe {
 
@@ -141,19 +142,8 @@ std::vector<uint8_t> FetchBuffer(const std::string& path, const GltfJson& buffer
     if (uri.find("://") != std::string::npos) {
       buffer.Fail("its uri is '" + shown + "'; only files beside the scene and data URIs are read");
     }
-    std::string decoded;
-    for (size_t i = 0; i < uri.size(); ++i) {  // percent-encoding, RFC 3986 section 2.1
-      int byte = 0;
-      if (uri[i] == '%' && i + 2 < uri.size() &&
-          std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &byte) == 1) {
-        decoded += static_cast<char>(byte);
-        i += 2;
-      } else {
-        decoded += uri[i];
-      }
-    }
     std::error_code error;
-    const auto file = folder / decoded;
+    const std::string file = FileOfUri(path, uri);
     if (!std::filesystem::is_regular_file(file, error)) {
       buffer.Fail("its file '" + shown + "' is missing");
     }

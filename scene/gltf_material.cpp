@@ -1,14 +1,12 @@
 #include <sstream>
 
+#include "scene/gltf_brdf.h"
 #include "scene/gltf_nodes.h"
 #include "scene/gltf_scene.h"
 
 namespace lobe {
 
 namespace {
-
-/// Ours: a model that glTF does not have, in place of metallic-roughness (docs/format.md).
-constexpr const char* kBrdfExtension = "LOBE_materials_brdf";
 
 constexpr const char* kTransmissionExtension = "KHR_materials_diffuse_transmission";
 constexpr const char* kGlassExtension = "KHR_materials_transmission";
@@ -21,20 +19,6 @@ void WarnOfTextures(const GltfJson& place, const GltfJson& material, std::vector
     warnings->push_back(material.element() + ": " + key + " is not read; " +
                         (has_factor ? "its factor is used" : "the surface is taken without it"));
   }
-}
-
-Reflectance ReadBrdfExtension(const GltfJson& brdf) {
-  const std::string model = brdf.String("model");
-  const Rgb albedo = brdf.Color("albedo", Rgb::Constant(0.5f), 0, 1);
-  if (model == "lambert") return Lambert{albedo};
-  if (model == "phong") {
-    return Phong{albedo, static_cast<float>(brdf.Number("exponent", Phong{}.exponent, 0))};
-  }
-  if (model == "ward") {
-    // Below a thousandth the peak exceeds 1e5 / sr, and no quadrature of ours finds it.
-    return Ward{albedo, static_cast<float>(brdf.Number("alpha", Ward{}.alpha, 1e-3, 1))};
-  }
-  brdf.FailValue("model", "\"lambert\", \"phong\" or \"ward\"");
 }
 
 // Needs the rest of the material, which decides whether any light goes through.
@@ -127,6 +111,7 @@ void WarnOfTheRest(const GltfJson& material, const Material& read, std::vector<s
 std::vector<Material> ReadMaterials(const GltfFile& file, std::vector<std::string>* warnings) {
   const GltfJson document = Document(file);
   std::vector<Material> materials;
+  BrdfExtensionReader brdfs(file, warnings);
   for (size_t i = 0; i < document.Count("materials"); ++i) {
     const GltfJson json = document.Entry("materials", i, "material");
     Material material;
@@ -138,7 +123,7 @@ std::vector<Material> ReadMaterials(const GltfFile& file, std::vector<std::strin
     material.emission = factor * static_cast<float>(strength.Number("emissiveStrength", 1, 0));
     if (!material.emission.allFinite()) json.Fail("emissiveFactor times emissiveStrength is not finite");
     if (json.Object("extensions").Has(kBrdfExtension)) {
-      material.reflectance = ReadBrdfExtension(json.Extension(kBrdfExtension));
+      material.reflectance = brdfs.Read(json.Extension(kBrdfExtension));
     } else {
       material.reflectance = ReadMetallicRoughness(json, warnings);
     }

@@ -6,6 +6,8 @@
 #include <set>
 #include <string>
 
+#include "scene/gltf_brdf.h"
+
 namespace lobe {
 namespace {
 
@@ -23,25 +25,64 @@ json BaseColour(const Rgb& c) {
 // decides.
 struct WriteReflectance {
   json* material;
+  GlbWriter* writer;
 
   json& Pbr() const { return (*material)["pbrMetallicRoughness"]; }
   json& Extension(const char* name) const { return (*material)["extensions"][name]; }
 
   void operator()(const Lambert& m) const {
-    Pbr() = {{"baseColorFactor", BaseColour(m.albedo)}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
-    Extension("KHR_materials_specular") = {{"specularFactor", 0.0}};
-    Extension("LOBE_materials_brdf") = {{"model", "lambert"}, {"albedo", JsonColour(m.albedo)}};
+    Matte(m.albedo);
+    Extension(kBrdfExtension) = {{"model", "lambert"}, {"albedo", JsonColour(m.albedo)}};
   }
   void operator()(const Phong& m) const {
-    // Blinn's rule of thumb alpha^2 = 2 / (n + 2), and roughness = sqrt(alpha).
-    Metal(m.albedo, std::pow(2.0f / (m.exponent + 2.0f), 0.25f));
-    Extension("LOBE_materials_brdf") = {
+    Metal(m.albedo, RoughnessOfPower(m.exponent));
+    Extension(kBrdfExtension) = {
         {"model", "phong"}, {"albedo", JsonColour(m.albedo)}, {"exponent", JsonNumber(m.exponent)}};
   }
   void operator()(const Ward& m) const {
     Metal(m.albedo, std::sqrt(std::min(m.alpha, 1.0f)));
-    Extension("LOBE_materials_brdf") = {
+    Extension(kBrdfExtension) = {
         {"model", "ward"}, {"albedo", JsonColour(m.albedo)}, {"alpha", JsonNumber(m.alpha)}};
+  }
+  void operator()(const BlinnPhong& m) const {
+    Metal(m.albedo, RoughnessOfPower(m.exponent));
+    Extension(kBrdfExtension) = {
+        {"model", "blinn-phong"}, {"albedo", JsonColour(m.albedo)}, {"exponent", JsonNumber(m.exponent)}};
+  }
+  void operator()(const CookTorrance& m) const {
+    Metal(m.f0, std::sqrt(m.alpha));
+    Extension(kBrdfExtension) = {
+        {"model", "cook-torrance"}, {"f0", JsonColour(m.f0)}, {"alpha", JsonNumber(m.alpha)}};
+  }
+  void operator()(const OrenNayar& m) const {
+    Matte(m.albedo);
+    Extension(kBrdfExtension) = {
+        {"model", "oren-nayar"}, {"albedo", JsonColour(m.albedo)}, {"sigma", JsonNumber(m.sigma)}};
+  }
+  void operator()(const AshikhminShirley& m) const {
+    Coated(m.diffuse, RoughnessOfPower(m.exponent));
+    Extension(kBrdfExtension) = {{"model", "ashikhmin-shirley"},
+                                 {"diffuse", JsonColour(m.diffuse)},
+                                 {"specular", JsonColour(m.specular)},
+                                 {"exponent", JsonNumber(m.exponent)}};
+  }
+  void operator()(const Plastic& m) const {
+    Coated(m.albedo(), m.roughness());
+    if (m.ior() != 1.5f) Extension("KHR_materials_ior") = {{"ior", JsonNumber(m.ior())}};
+    Extension(kBrdfExtension) = {{"model", "plastic"},
+                                 {"albedo", JsonColour(m.albedo())},
+                                 {"ior", JsonNumber(m.ior())},
+                                 {"roughness", JsonNumber(m.roughness())}};
+  }
+  void operator()(const Measured& m) const {
+    const Rgb colour = m.data->NormalAlbedo().min(1.0f);
+    // Wider than this its peak is hardly one.
+    if (m.data->Width() > 0.7) {
+      Matte(colour);
+    } else {
+      Metal(colour, float(std::sqrt(m.data->Width())));
+    }
+    Extension(kBrdfExtension) = MeasuredJson(*m.data, writer);
   }
   void operator()(const MetallicRoughness& m) const {
     Pbr() = {{"baseColorFactor", BaseColour(m.base_color)},
@@ -77,6 +118,16 @@ struct WriteReflectance {
              {"metallicFactor", 1.0},
              {"roughnessFactor", JsonNumber(roughness)}};
   }
+  void Coated(const Rgb& colour, float roughness) const {
+    Metal(colour, roughness);
+    Pbr()["metallicFactor"] = 0.0;
+  }
+  void Matte(const Rgb& colour) const {
+    Coated(colour, 1);
+    Extension("KHR_materials_specular") = {{"specularFactor", 0.0}};
+  }
+  // Blinn's rule of thumb alpha^2 = 2 / (n + 2), and roughness = sqrt(alpha).
+  static float RoughnessOfPower(float exponent) { return std::pow(2.0f / (exponent + 2.0f), 0.25f); }
 };
 
 void CollectExtensions(const json& value, std::set<std::string>* names) {
@@ -103,10 +154,10 @@ json JsonNumber(float value) {
   return static_cast<float>(number) == value ? number : double(value);
 }
 
-json GltfMaterial(const Material& material) {
+json GltfMaterial(const Material& material, GlbWriter* writer) {
   json out = json::object();
   if (!material.name.empty()) out["name"] = material.name;
-  std::visit(WriteReflectance{&out}, material.reflectance);
+  std::visit(WriteReflectance{&out, writer}, material.reflectance);
   if (material.emits()) {
     // emissiveFactor ends at 1. A power of two as the strength keeps the product exact.
     int exponent = 0;

@@ -121,7 +121,7 @@ class SolutionWriter {
 
   void WriteMaterials() {
     json& materials = Document()["materials"] = json::array();
-    for (const Material& material : s_.scene.materials) materials.push_back(GltfMaterial(material));
+    for (const Material& material : s_.scene.materials) materials.push_back(GltfMaterial(material, &glb_));
     materials.push_back({{"name", "baked light"},
                          {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
                          {"extensions", {{"KHR_materials_unlit", json::object()}}}});

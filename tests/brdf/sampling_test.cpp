@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "brdf/hemisphere_integral.h"
-#include "tests/support/brdf_laws.h"
+#include "tests/support/brdf_models.h"
 #include "tests/support/direction_chi_square.h"
 #include "tests/support/outgoing_integral.h"
 #include "tests/support/significance.h"
@@ -18,40 +18,18 @@ namespace lobe {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const Rgb kColour(0.8f, 0.5f, 0.2f);
+const Rgb kColour = test::kModelColour;
 
-MetallicRoughness Gltf(float metallic, float roughness, float transmission = 0) {
-  MetallicRoughness m;
-  m.base_color = kColour;
-  m.metallic = metallic;
-  m.roughness = roughness;
-  m.diffuse_transmission = transmission;
-  m.diffuse_transmission_color = Rgb(0.3f, 0.6f, 0.9f);
-  return m;
-}
-
-MetallicRoughness Matte(float transmission) {
-  MetallicRoughness m = Gltf(0, 1, transmission);
-  m.has_specular = true;
-  m.specular = 0;
-  return m;
-}
-
-MetallicRoughness Tinted(float roughness) {  // KHR_materials_specular: base by 1 - max F
-  MetallicRoughness m = Gltf(0.2f, roughness, 0.4f);
-  m.has_specular = true;
-  m.specular = 0.7f;
-  m.specular_color = Rgb(1, 0.5f, 0.1f);
-  return m;
-}
+using test::AllModelCases;
+using test::Gltf;
+using test::Matte;
+using test::ModelCase;
 
 /// Every alternative of Reflectance, rough to sharp.
 std::vector<Reflectance> Models() {
-  return {
-      Lambert{kColour},     Phong{kColour, 0}, Phong{kColour, 3}, Phong{kColour, 200}, Ward{kColour, 0.5f},
-      Ward{kColour, 0.05f}, Gltf(1, 1),        Gltf(1, 0.5f),     Gltf(1, 0.15f),      Gltf(0, 0.7f),
-      Gltf(0, 0.2f),        Gltf(0.5f, 0.4f),  Gltf(0, 0),  // ideal mirror over its base
-      Gltf(0, 0.3f, 0.6f),  Gltf(0, 0, 0.5f),  Matte(0),          Matte(0.5f),         Tinted(0.4f)};
+  std::vector<Reflectance> out;
+  for (const ModelCase& m : AllModelCases()) out.push_back(m.r);
+  return out;
 }
 
 const std::vector<double> kAngles = {0.0, 0.4, 1.0, 1.35, 1.53};
@@ -123,7 +101,8 @@ TEST(ReflectanceSamplerTest, SamplesFollowTheirDensity) {
       EXPECT_GT(result.p_value, level) << Words(r, theta) << ": chi-square " << result.statistic << " over "
                                        << result.cells << " cells, " << kSamples << " samples";
       // 1 less what gloss loses below the horizon and what an ideal mirror takes.
-      EXPECT_LE(cells.integral(), 1 + 1e-4) << Words(r, theta);
+      // Measured ones have a step at every cell's edge, on which the adaptive integral is off by some 1e-4.
+      EXPECT_LE(cells.integral(), 1 + (std::holds_alternative<Measured>(r) ? 1e-3 : 1e-4)) << Words(r, theta);
     }
   }
 }
@@ -153,23 +132,23 @@ TEST(ReflectanceSamplerTest, DensityIntegratesToOneWithoutLoss) {
 // Directional albedo, both sides and the mirror together, by quadrature in half-vector coordinates.
 TEST(ReflectanceSamplerTest, MeanWeightIsTheDirectionalAlbedo) {
   constexpr int kSamples = 40000;
-  const double tests = double(Models().size() * kAngles.size() * 3);
+  const std::vector<ModelCase> models = AllModelCases();
+  const double tests = double(models.size() * kAngles.size() * 3);
   const double worst_z = test::SidakQuantile(0.01, tests);
-  for (const Reflectance& r : Models()) {
+  for (const ModelCase& model : models) {
+    const Reflectance& r = model.r;
     const ReflectanceSampler sampler(r);
-    double width = 1;
-    if (const auto* ward = std::get_if<Ward>(&r)) width = ward->alpha;
-    if (const auto* phong = std::get_if<Phong>(&r)) width = std::sqrt(1 / (0.5 + phong->exponent));
     const auto* gltf = std::get_if<MetallicRoughness>(&r);
-    if (gltf && gltf->roughness >= kMirrorRoughness) width = gltf->roughness * gltf->roughness;
+    HalfVectorRule smooth = model.Rule();
+    smooth.width = 1;
     for (const double theta : kAngles) {
       const Vec3 wo = Eye(theta);
       const Vec3d wo_plane(std::sin(theta), 0, std::cos(theta));
       Eigen::Array3d expected = Eigen::Array3d::Zero();
       // Two widths: base and transmission are smooth whatever the gloss.
-      expected += test::IntegrateOutgoing(width, wo_plane.z(),
+      expected += test::IntegrateOutgoing(model.Rule(), wo_plane.z(),
                                           [&](const Vec3d& wi) { return EvaluateGloss(r, wi, wo_plane); });
-      expected += test::IntegrateOutgoing(1, wo_plane.z(), [&](const Vec3d& wi) -> Rgb {
+      expected += test::IntegrateOutgoing(smooth, wo_plane.z(), [&](const Vec3d& wi) -> Rgb {
         const Vec3d below(wi.x(), wi.y(), -wi.z());
         return EvaluateBase(r, wi, wo_plane) + EvaluateTransmission(r, wo_plane, below);
       });

@@ -18,7 +18,9 @@ inline void WriteSceneGlb(const Scene& scene, const std::string& path) {
   GlbWriter writer;
   nlohmann::json& document = writer.document;
   nlohmann::json nodes = nlohmann::json::array();
-  for (const Material& material : scene.materials) document["materials"].push_back(GltfMaterial(material));
+  for (const Material& material : scene.materials) {
+    document["materials"].push_back(GltfMaterial(material, &writer));
+  }
 
   std::map<uint32_t, std::vector<const Face*>> surfaces;
   for (const Face& face : scene.faces) surfaces[face.surface].push_back(&face);
