@@ -16,6 +16,10 @@ namespace {
 constexpr int kBaseDegreeCap = 8;
 constexpr double kBaseError = 0.01;
 
+// From this exponent on Phong's end, 90 degrees from the mirror direction, is smooth enough to be integrated
+// across (docs/validation.md#extremes).
+constexpr float kSmoothPhong = 5;
+
 std::string Key(const char* model, double parameter, int l_max, int knots) {
   std::ostringstream key;
   key.precision(9);
@@ -131,12 +135,11 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   spline_ = std::make_shared<IncidenceSpline>(knots);
 
   // The gloss f (plain + rising (1 - V.H)^5). Phong and Ward do not rise.
-  const auto gloss_from = [&](const char* model, double parameter, double width, const ScalarBrdf& f,
-                              const Rgb& plain, const Rgb& rising) {
+  const auto gloss_from = [&](const char* model, double parameter, const HalfVectorRule& rule,
+                              const ScalarBrdf& f, const Rgb& plain, const Rgb& rising) {
     if ((plain <= 0).all() && (rising <= 0).all()) return;
-    const auto tables = cache.Get(Key(model, parameter, cap, knots), [&] {
-      return SchlickTables::Build(f, cap, HalfVectorRule{.width = width}, knots);
-    });
+    const auto tables = cache.Get(Key(model, parameter, cap, knots),
+                                  [&] { return SchlickTables::Build(f, cap, rule, knots); });
     // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
     // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
     gloss.l_max = DegreeWithin(tables->plain, options);
@@ -151,13 +154,15 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   } else if (const auto* phong = std::get_if<Phong>(&reflectance)) {
     const Reflectance white = Phong{Rgb::Constant(1), phong->exponent};
     gloss_from(
-        "phong", phong->exponent, std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
+        "phong", phong->exponent,
+        {.width = std::min(1.0, 1.0 / std::sqrt(phong->exponent + 1.0)),
+         .half_around_mirror = phong->exponent < kSmoothPhong},
         [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
         phong->albedo, Rgb::Zero());
   } else if (const auto* ward = std::get_if<Ward>(&reflectance)) {
     const Reflectance white = Ward{Rgb::Constant(1), ward->alpha};
     gloss_from(
-        "ward", ward->alpha, std::min(1.0f, ward->alpha),
+        "ward", ward->alpha, {.width = std::min(1.0f, ward->alpha)},
         [&](const Vec3d& wi, const Vec3d& wo) { return double(EvaluateGloss(white, wi, wo)[0]); },
         ward->albedo, Rgb::Zero());
   } else if (const auto* gltf = std::get_if<MetallicRoughness>(&reflectance)) {
@@ -207,7 +212,7 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
     } else if (coated) {
       const double alpha = double(gltf->roughness) * gltf->roughness;
       gloss_from(
-          "ggx", gltf->roughness, alpha,
+          "ggx", gltf->roughness, {.width = alpha},
           [alpha](const Vec3d& wi, const Vec3d& wo) {
             const Vec3d h = (wi + wo).normalized();
             return GgxD(h.z(), alpha) * GgxV(wi.z(), wo.z(), alpha);
