@@ -12,6 +12,7 @@
 #include "solver/form_factor.h"
 #include "solver/solver.h"
 #include "tests/support/scene_builder.h"
+#include "tests/support/two_rooms.h"
 
 namespace lobe {
 namespace {
@@ -78,42 +79,12 @@ TEST(ExtremesTest, BlackRoomsAreDoneAfterTheFirstStep) {
 
 // --- radiance ------------------------------------------------------------------------------------------
 
-struct TwoRooms {
-  Scene scene;
-  uint32_t bright_walls, dim_walls, dim_thing;
-};
-
-// Two closed rooms side by side, a small lamp and a thing on the floor in each. Neither sees the other, but
-// all of the bright lamp lies above the horizons of the dim room.
-TwoRooms MakeTwoRooms(float bright, float dim, bool glossy = false) {
-  SceneBuilder b;
-  const uint32_t wall = b.AddLambert(Rgb::Constant(0.5f));
-  MetallicRoughness metal;
-  metal.base_color = Rgb::Constant(0.8f);
-  metal.roughness = 0.5f;
-  const uint32_t thing = glossy ? b.AddMaterial("metal", metal) : wall;
-  const uint32_t bright_lamp = b.AddEmitter(Rgb::Constant(bright)),
-                 dim_lamp = b.AddEmitter(Rgb::Constant(dim));
-  TwoRooms out;
-  for (const bool first : {true, false}) {
-    const float x = first ? 0.0f : 5.0f;
-    const uint32_t walls = b.AddBox({x, 0, 0}, {x + 4, 3, 4}, wall, /*inward=*/true);
-    const uint32_t box = b.AddBox({x + 1, 0.5f, 1}, {x + 2, 1.25f, 2}, thing);
-    const float y = 2.75f;
-    b.AddQuad({x + 1.5f, y, 1.5f}, {x + 2.5f, y, 1.5f}, {x + 2.5f, y, 2.5f}, {x + 1.5f, y, 2.5f},
-              first ? bright_lamp : dim_lamp);
-    (first ? out.bright_walls : out.dim_walls) = walls;
-    out.dim_thing = box;
-  }
-  out.scene = b.Build();
-  return out;
-}
-
 // Light is linear: with both lamps at 1 every surface shows what it should show here, scaled. What is left is
 // the noise of other samples of the same lamps.
 TEST(ExtremesTest, RadianceFromTrillionthsToTrillionsIsRightInEveryRoom) {
   for (const bool glossy : {false, true}) {
-    const TwoRooms even = MakeTwoRooms(1, 1, glossy), rooms = MakeTwoRooms(1e12f, 1e-12f, glossy);
+    const test::TwoRooms even = test::MakeTwoRooms(1, 1, glossy),
+                         rooms = test::MakeTwoRooms(1e12f, 1e-12f, glossy);
     const Solution expected = Solve(even.scene, Coarse(0.8f)), s = Solve(rooms.scene, Coarse(0.8f));
     EXPECT_EQ(s.stop_reason, StopReason::kConverged);
     EXPECT_TRUE(AllFinite(s));
@@ -126,7 +97,7 @@ TEST(ExtremesTest, RadianceFromTrillionthsToTrillionsIsRightInEveryRoom) {
 }
 
 TEST(ExtremesTest, ByShootingAloneADimRoomIsAsRight) {
-  const TwoRooms even = MakeTwoRooms(1, 1), rooms = MakeTwoRooms(1e12f, 1e-12f);
+  const test::TwoRooms even = test::MakeTwoRooms(1, 1), rooms = test::MakeTwoRooms(1e12f, 1e-12f);
   SolveOptions o = Coarse(1.5f);
   o.transport = Transport::kShooting;
   const Solution expected = Solve(even.scene, o), s = Solve(rooms.scene, o);
