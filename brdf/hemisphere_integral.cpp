@@ -27,7 +27,14 @@ OutgoingPoints HalfVectorRule::Points(double cos_theta_i) const {
     // wo.z = 2 (wi.h) h.z - wi.z = R cos(2 theta_h - delta), tan delta = tan theta_i cos phi_h: above the
     // horizon for theta_h < pi/4 + delta/2.
     const double delta = std::atan2(si * cos_phi, ci);
-    const double theta_max = 0.25 * std::numbers::pi + 0.5 * delta;
+    double theta_max = 0.25 * std::numbers::pi + 0.5 * delta;
+    if (half_around_mirror) {
+      // With a^2 = (wi's length in this azimuth's plane)^2, wo.mirror = a^2 (cos 2 theta_h + cos 2 delta) -
+      // cos 2 theta_i, which falls with theta_h.
+      const double a2 = ci * ci + si * si * cos_phi * cos_phi;
+      const double cosine = (ci * ci - si * si) / a2 - std::cos(2.0 * delta);
+      theta_max = std::min(theta_max, 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0)));
+    }
     const double x_max = std::asinh(theta_max / width);
     for (size_t j = 0; j < polar.nodes.size(); ++j) {
       // theta_h = width sinh(x): even steps across the peak, even ratios along the tail. Towards wo's

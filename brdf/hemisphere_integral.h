@@ -19,6 +19,9 @@ struct OutgoingPoints {
 struct HalfVectorRule {
   /// Width of the distribution of half vectors, as GGX's alpha; points crowd within a few of it.
   double width = 1;
+  /// The integrand ends, perhaps with a jump, where wo is 90 degrees from the mirror direction, as Phong's
+  /// does for exponents near 0.
+  bool half_around_mirror = false;
   /// Defaults give the albedo of GGX to 1e-8 for every roughness and angle (docs/validation.md#flux).
   GaussLegendre polar{40, 0.0, 1.0};
   GaussLegendre azimuth{64, -1.0, 1.0};  ///< over half a turn: the integrand is even in azimuth

@@ -5,13 +5,61 @@
 #include <numbers>
 
 #include "sh/hemisphere_basis.h"
+#include "sh/lanes.h"
 #include "sh/simd.h"
 
 namespace lobe {
 namespace {
 
-LOBE_SIMD_CLONES void AddScaled(float* out, const float* in, float a, int count) {
-  for (int i = 0; i < count; ++i) out[i] += a * in[i];
+// Sixteen numbers wherever they lie.
+typedef float LooseLanes __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
+LOBE_INLINE const LooseLanes& Loose(const float* from) { return *reinterpret_cast<const LooseLanes*>(from); }
+LOBE_INLINE LooseLanes& Loose(float* at) { return *reinterpret_cast<LooseLanes*>(at); }
+
+// Adds a spectrum, times a weight, to each of `count` bins. `size` is a multiple of kLanes.
+LOBE_SIMD_CLONES void AddToBins(float* moments, size_t size, const float* spectrum, const int* bin,
+                                const float* weight, int count) {
+  for (size_t i = 0; i < size; i += kLanes) {
+    const FloatLanes value = Loose(spectrum + i);
+    for (int k = 0; k < count; ++k) {
+      LooseLanes& to = Loose(moments + bin[k] * size + i);
+      to = to + weight[k] * value;
+    }
+  }
+}
+
+// out[c][cos m phi, sin m phi] = scale[c] * those, for m <= l_max, then up to 15 floats of rubbish. Sixteen
+// orders side by side, as in LobeReader. `azimuth` is scratch for whole blocks of orders, twice.
+LOBE_SIMD_CLONES void OneDirection(float x, float y, int l_max, const float* scale, float* azimuth,
+                                   float* out) {
+  const float x2 = x * x - y * y, y2 = 2 * x * y, x3 = x2 * x - y2 * y, y3 = x2 * y + y2 * x;
+  const float x4 = x2 * x2 - y2 * y2, y4 = 2 * x2 * y2, x8 = x4 * x4 - y4 * y4, y8 = 2 * x4 * y4;
+  const float x12 = x8 * x4 - y8 * y4, y12 = x8 * y4 + y8 * x4;
+  const FloatLanes small_re = {1, x, x2, x3, 1, x, x2, x3, 1, x, x2, x3, 1, x, x2, x3};
+  const FloatLanes small_im = {0, y, y2, y3, 0, y, y2, y3, 0, y, y2, y3, 0, y, y2, y3};
+  const FloatLanes large_re = {1, 1, 1, 1, x4, x4, x4, x4, x8, x8, x8, x8, x12, x12, x12, x12};
+  const FloatLanes large_im = {0, 0, 0, 0, y4, y4, y4, y4, y8, y8, y8, y8, y12, y12, y12, y12};
+  FloatLanes cosine = small_re * large_re - small_im * large_im;
+  FloatLanes sine = small_re * large_im + small_im * large_re;
+  const float x16 = x8 * x8 - y8 * y8, y16 = 2 * x8 * y8;
+  const int blocks = l_max / kLanes + 1;
+  float* sines = azimuth + blocks * kLanes;
+  for (int block = 0; block < blocks; ++block) {
+    Loose(azimuth + block * kLanes) = cosine;
+    Loose(sines + block * kLanes) = sine;
+    const FloatLanes turned = cosine * x16 - sine * y16;
+    sine = cosine * y16 + sine * x16;
+    cosine = turned;
+  }
+  // What is written past the last order is written over by what follows.
+  for (int c = 0; c < 3; ++c) {
+    for (const float* from : {static_cast<const float*>(azimuth), static_cast<const float*>(sines)}) {
+      for (int block = 0; block < blocks; ++block) {
+        Loose(out + block * kLanes) = scale[c] * Loose(from + block * kLanes);
+      }
+      out += l_max + 1;
+    }
+  }
 }
 
 LOBE_SIMD_CLONES void AddProducts(float* out, const float* a, const float* b, int count) {
@@ -40,13 +88,6 @@ LOBE_SIMD_CLONES void AzimuthalFunctions(float cos_phi, float sin_phi, int l_max
   }
 }
 
-// out[c][i] = scale[c] * in[i].
-LOBE_SIMD_CLONES void SetOuterProduct(float* out, const float* in, const float* scale, int count) {
-  for (int c = 0; c < 3; ++c) {
-    for (int i = 0; i < count; ++i) out[c * count + i] = scale[c] * in[i];
-  }
-}
-
 // Turns three spectra by the azimuth whose cos and sin of m phi are given.
 LOBE_SIMD_CLONES void TurnSpectrum(float* spectrum, const float* azimuth, int orders) {
   const float* cos_m = azimuth;
@@ -68,33 +109,38 @@ void IncidentMoments::Start(const MaterialLobes& material) {
   material_ = &material;
   l_max_ = material.max_degree();
   stride_ = 2 * (l_max_ + 1);
-  moments_.assign(size_t(material.spline().bins()) * 3 * stride_, 0.0f);
-  azimuth_.assign(stride_, 0.0f);
-  spectrum_.assign(3 * stride_, 0.0f);
+  bin_size_ = (size_t(3) * stride_ + kLanes - 1) / kLanes * kLanes;
+  moments_.assign(size_t(material.spline().bins()) * bin_size_, 0.0f);
+  azimuth_.assign(2 * (size_t(l_max_) / kLanes + 1) * kLanes, 0.0f);
+  spectrum_.assign(bin_size_ + kLanes, 0.0f);
   first_bin_ = material.spline().bins();
   last_bin_ = -1;
-  rest_base_ = rest_gloss_ = Rgb::Zero();
+  unsettled_ = 0;
+  any_settled_ = false;
+  rest_base_ = rest_gloss_ = Eigen::Array3d::Zero();
 }
 
 // Puts spectrum_, which sums to `irradiance` in order 0, into the bins of its angle. Spoils spectrum_.
 void IncidentMoments::AddSpectrum(float cos_theta_i, const Rgb& irradiance) {
+  if (unsettled_ == kSettleAfter) Settle();
+  ++unsettled_;
   const auto stencil = material_->spline().At(cos_theta_i);
-  for (int k = 3; k >= 0; --k) {
-    if (k == 0 && stencil.mirrored) {
-      // The bin before the first is its mirror image: odd orders change sign. All other bins are done.
-      for (int row = 0; row < 6; ++row) {
-        float* orders = spectrum_.data() + row * (l_max_ + 1);
-        for (int m = 1; m <= l_max_; m += 2) orders[m] = -orders[m];
-      }
+  const int apart = stencil.mirrored ? 1 : 0;
+  AddToBins(moments_.data(), bin_size_, spectrum_.data(), stencil.bin + apart, stencil.weight + apart,
+            4 - apart);
+  if (stencil.mirrored) {
+    // The bin before the first is its mirror image: odd orders change sign.
+    for (int row = 0; row < 6; ++row) {
+      float* orders = spectrum_.data() + row * (l_max_ + 1);
+      for (int m = 1; m <= l_max_; m += 2) orders[m] = -orders[m];
     }
-    AddScaled(moments_.data() + size_t(stencil.bin[k]) * 3 * stride_, spectrum_.data(), stencil.weight[k],
-              3 * stride_);
+    AddToBins(moments_.data(), bin_size_, spectrum_.data(), stencil.bin, stencil.weight, 1);
   }
   first_bin_ = std::min({first_bin_, stencil.bin[0], stencil.bin[1]});
   last_bin_ = std::max(last_bin_, stencil.bin[3]);
 
   const FineAngle at(cos_theta_i);
-  const auto rest = [&](const PartLobes& part, Rgb& sum) {
+  const auto rest = [&](const PartLobes& part, Eigen::Array3d& sum) {
     if (part.l_max < 0) return;
     for (int c = 0; c < 3; ++c) sum[c] += irradiance[c] * at.Read(part.flux_rest[c]);
   };
@@ -103,10 +149,24 @@ void IncidentMoments::AddSpectrum(float cos_theta_i, const Rgb& irradiance) {
 }
 
 void IncidentMoments::Add(const Vec3& wi, const Rgb& irradiance) {
-  const float s = std::hypot(wi.x(), wi.y());
-  AzimuthalFunctions(s > 0 ? wi.x() / s : 1.0f, s > 0 ? wi.y() / s : 0.0f, l_max_, azimuth_.data());
-  SetOuterProduct(spectrum_.data(), azimuth_.data(), irradiance.data(), stride_);
+  // At the pole an azimuth means nothing, and so near it squares would lose their digits.
+  constexpr float kPole = 1e-15f;
+  const float s2 = wi.x() * wi.x() + wi.y() * wi.y();
+  const bool pole = !(s2 > kPole * kPole);
+  const float scale = pole ? 0.0f : 1.0f / std::sqrt(s2);
+  OneDirection(pole ? 1.0f : wi.x() * scale, wi.y() * scale, l_max_, irradiance.data(), azimuth_.data(),
+               spectrum_.data());
   AddSpectrum(wi.z(), irradiance);
+}
+
+void IncidentMoments::Settle() {
+  if (!any_settled_) settled_.assign(moments_.size(), 0.0);
+  any_settled_ = true;
+  unsettled_ = 0;
+  for (size_t i = first_bin_ * bin_size_; i < (last_bin_ + 1) * bin_size_; ++i) {
+    settled_[i] += moments_[i];
+    moments_[i] = 0;
+  }
 }
 
 void IncidentMoments::AddRing(float cos_theta_i, const float* irradiance_planes, int count, float phi0) {
@@ -119,11 +179,19 @@ void IncidentMoments::AddRing(float cos_theta_i, const float* irradiance_planes,
 }
 
 void IncidentMoments::Finish(float* base, float* gloss) {
-  FinishPart(material_->base, rest_base_, base);
-  FinishPart(material_->gloss, rest_gloss_, gloss);
+  const float* moments = moments_.data();
+  if (any_settled_) {
+    Settle();
+    settled_sum_.resize(settled_.size());
+    std::copy(settled_.begin(), settled_.end(), settled_sum_.begin());
+    moments = settled_sum_.data();
+  }
+  FinishPart(material_->base, rest_base_, moments, base);
+  FinishPart(material_->gloss, rest_gloss_, moments, gloss);
 }
 
-void IncidentMoments::FinishPart(const PartLobes& part, const Rgb& rest, float* out) {
+void IncidentMoments::FinishPart(const PartLobes& part, const Eigen::Array3d& rest, const float* moments,
+                                 float* out) {
   if (part.l_max < 0) return;
   const int rows = part.RowCount(), l_max = part.l_max;
   for (int c = 0; c < 3; ++c) {
@@ -132,7 +200,7 @@ void IncidentMoments::FinishPart(const PartLobes& part, const Rgb& rest, float* 
     float* sine = cosine + rows;
     for (int bin = first_bin_; bin <= last_bin_; ++bin) {
       const float* control = part.control[c].data() + size_t(bin) * rows;
-      const float* cos_m = moments_.data() + (size_t(bin) * 3 + c) * stride_;
+      const float* cos_m = moments + size_t(bin) * bin_size_ + size_t(c) * stride_;
       const float* sin_m = cos_m + l_max_ + 1;
       for (int step = 0, row = 0; 2 * step <= l_max; ++step) {
         const int orders = l_max - 2 * step + 1;
@@ -150,7 +218,7 @@ void IncidentMoments::FinishPart(const PartLobes& part, const Rgb& rest, float* 
       }
     }
     // A constant lobe of flux F has the coefficient F / pi * sqrt(2 pi).
-    lobe[0] += rest[c] * std::sqrt(2.0f / std::numbers::pi_v<float>);
+    lobe[0] += float(rest[c]) * std::sqrt(2.0f / std::numbers::pi_v<float>);
   }
 }
 

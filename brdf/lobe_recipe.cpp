@@ -33,6 +33,10 @@ LobeRecipe Ggx(float roughness, const Rgb& f0, const Rgb& f90) {
   return LobeRecipe{Key("ggx", {roughness}), f, {.width = alpha}, f0, f90 - f0};
 }
 
+// From this exponent on Phong's end, 90 degrees from the mirror direction, is smooth enough to be integrated
+// across (docs/validation.md#extremes).
+constexpr float kSmoothPhong = 5;
+
 struct Gloss {
   using Recipe = std::optional<LobeRecipe>;
 
@@ -45,7 +49,8 @@ struct Gloss {
     };
     return LobeRecipe{Key("phong", {m.exponent}),
                       f,
-                      {.width = std::min(1.0, 1.0 / std::sqrt(m.exponent + 1.0))},
+                      {.width = std::min(1.0, 1.0 / std::sqrt(m.exponent + 1.0)),
+                       .half_around_mirror = m.exponent < kSmoothPhong},
                       m.albedo,
                       Rgb::Zero()};
   }

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Lobe needs on Debian 12 (or a relative) and is not there yet. Asks apt nothing when nothing is
-# missing. Arguments: further things wanted, "validator" for the glTF validator's node and npm.
+# missing. Arguments: further things wanted, "validator" for the glTF validator's node and npm, "bench" for
+# lobes_benchmark's Google Benchmark.
 set -euo pipefail
 
 packages=(git cmake ninja-build g++ ccache
@@ -25,8 +26,11 @@ for want in "$@"; do
       command -v node >/dev/null || missing+=(nodejs)
       command -v npm >/dev/null || missing+=(npm ca-certificates)
       ;;
+    bench)
+      installed libbenchmark-dev || missing+=(libbenchmark-dev)
+      ;;
     *)
-      echo "install-dependencies.sh: unknown argument '$want', expected 'validator'" >&2
+      echo "install-dependencies.sh: unknown argument '$want', expected 'validator' or 'bench'" >&2
       exit 2
       ;;
   esac

@@ -111,7 +111,7 @@ PathScene::Vertex PathScene::VertexAt(const RayHit& hit, const Vec3& wo) const {
     if (cosine < kLeastCosine) shading_normal = (shading_normal + (kLeastCosine - cosine) * wo).normalized();
   }
   const Frame frame(shading_normal);
-  return {position, normal, frame, frame.ToLocal(wo)};
+  return {position, normal, frame, frame.ToLocal(wo), tracer_.Lift(hit.face)};
 }
 
 PathScene::LampSample PathScene::SampleLamp(const Vertex& vertex, const ReflectanceSampler& sampler,
@@ -133,8 +133,8 @@ PathScene::LampSample PathScene::SampleLamp(const Vertex& vertex, const Reflecta
   const ReflectanceValue value = sampler.Evaluate(vertex.wo_local, wi_local);
   if (!(value.f > 0).any()) return out;
 
-  const Vec3 from = vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above);
-  const Vec3 to = target + lamp.normal * std::copysign(tracer_.epsilon(), towards);
+  const Vec3 from = vertex.position + vertex.normal * std::copysign(vertex.lift, above);
+  const Vec3 to = target + lamp.normal * std::copysign(tracer_.Lift(lamps_.face(chosen)), towards);
   out.shadow = {from, 0, to - from, 1};  // Visible takes its length for the way
   out.light_pdf = lamps_.PerArea(chosen, choice) * distance2 * distance / std::abs(towards);
   out.direction_pdf = value.pdf;
@@ -158,7 +158,7 @@ PathScene::Scattered PathScene::Scatter(const Vertex& vertex, const ReflectanceS
   out.alive = true;
   out.weight = next.weight;
   (next.delta ? out.delta_chance : out.pdf) = next.pdf;
-  out.ray = {vertex.position + vertex.normal * std::copysign(tracer_.epsilon(), above), 0, wi, kInfinity};
+  out.ray = {vertex.position + vertex.normal * std::copysign(vertex.lift, above), 0, wi, kInfinity};
   return out;
 }
 

@@ -36,6 +36,7 @@ class PathScene {
     Vec3 position, normal;  ///< of the face, on the vertex's side
     Frame frame;            ///< about the shading normal
     Vec3 wo_local;
+    float lift;  ///< RayTracer::Lift of the face
   };
 
   /// A way from a vertex to a point of a lamp.

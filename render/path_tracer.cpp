@@ -69,7 +69,7 @@ bool PathTracer::PassGlass(const PathScene::Vertex& vertex, const RayHit& hit, c
   }
   const SpecularWay& on = through ? ways.transmission : ways.reflection;
   next->weight = on.weight;
-  next->ray = {vertex.position + on.outward * scene_.tracer().epsilon(), 0, on.direction,
+  next->ray = {vertex.position + on.outward * vertex.lift, 0, on.direction,
                std::numeric_limits<float>::infinity()};
   if (through) {
     walk->media = ways.beyond;

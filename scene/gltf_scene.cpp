@@ -5,8 +5,10 @@
 #include <map>
 #include <set>
 
+#include "scene/contacts.h"
 #include "scene/gltf_nodes.h"
 #include "scene/input_error.h"
+#include "scene/precision.h"
 
 namespace lobe {
 
@@ -56,6 +58,7 @@ class SceneReader {
     scene_.cameras = ReadCameras(file_);
     if (scene_.faces.empty()) document_.Fail("the scene has no triangles");
     for (const auto& [mesh, counts] : dropped_) WarnOfDropped(mesh, counts);
+    WarnOfLostPrecision(&scene_, ContactOptions{}.distance);
     return std::move(scene_);
   }
 

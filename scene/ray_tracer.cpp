@@ -18,6 +18,8 @@ namespace {
 
 constexpr uint32_t kAllMasks = 0xffffffffu;
 
+constexpr float kRoundings = 4;  // of coordinates, by which rays are lifted; see RayTracer::RayTracer
+
 /// Rays that meet an edge meet several faces at one t, or a rounding error apart. Which of them Embree
 /// reports depends on the order it comes to them, and that on the other rays of a packet. So the choice is
 /// made here: the least t and of equals the first face, by a filter that sees all that could be chosen.
@@ -322,7 +324,38 @@ RayTracer::RayTracer(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   for (const Face& face : scene.faces) {
     for (uint32_t v : face.vertex) farthest = std::max(farthest, scene.positions[v].cwiseAbs().maxCoeff());
   }
-  epsilon_ = 4 * std::ldexp(farthest, -23);
+  epsilon_ = kRoundings * std::ldexp(farthest, -23);
+  const auto corners = [&](uint32_t f) { return scene.Corners(scene.faces[f]); };
+  const uint32_t count = static_cast<uint32_t>(scene.faces.size());
+  for (uint32_t f = 0; f < count; ++f) {
+    if (Lift(corners(f)) == epsilon_) continue;
+    for (uint32_t g = 0; g < count; ++g) face_lift_.push_back(Lift(corners(g)));
+    break;
+  }
+}
+
+float RayTracer::LiftOf(const Eigen::AlignedBox3f& box) const {
+  if (box.isEmpty()) return epsilon_;
+  constexpr float kOfSize = 1e-3f;  // chosen: does not show
+  const float farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  const float size = box.sizes().maxCoeff();
+  return std::min(epsilon_, std::max(kRoundings * std::ldexp(farthest, -23), kOfSize * size));
+}
+
+float RayTracer::Lift(const std::array<Vec3, 3>& corners) const {
+  Eigen::AlignedBox3f box(corners[0]);
+  box.extend(corners[1]).extend(corners[2]);
+  return LiftOf(box);
+}
+
+std::vector<float> RayTracer::PatchLifts(const Mesh& mesh) const {
+  std::vector<float> out;
+  for (const Mesh::Patch& patch : mesh.patches) {
+    Eigen::AlignedBox3f box;
+    for (uint32_t n = patch.node_begin; n < patch.node_end; ++n) box.extend(mesh.node_position[n]);
+    out.push_back(LiftOf(box));
+  }
+  return out;
 }
 
 RayTracer::~RayTracer() = default;

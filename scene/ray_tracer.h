@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
 
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -63,10 +67,20 @@ class RayTracer {
                        PacketHits* hits) const;
 
   /// Distance by which ray origins are lifted off surfaces: a few rounding errors of coordinates this far
-  /// from the origin, and no more, so that contacts do not leak.
+  /// from the origin, and no more, so that contacts do not leak. The most that any face needs.
   float epsilon() const { return epsilon_; }
+  /// The same for points on one face. Of what is small beside the scene's coordinates a thousandth of its
+  /// size will do, as long as that is a few rounding errors of its own: a coin on a plane a million metres
+  /// wide must not be read half a metre above itself.
+  float Lift(uint32_t face) const { return face_lift_.empty() ? epsilon_ : face_lift_[face]; }
+  float Lift(const std::array<Vec3, 3>& corners) const;
+  /// For the nodes of each patch of `mesh`.
+  std::vector<float> PatchLifts(const Mesh& mesh) const;
 
  private:
+  float LiftOf(const Eigen::AlignedBox3f& box) const;
+
+  std::vector<float> face_lift_;  // empty: all epsilon_
   struct Impl;
   std::unique_ptr<Impl> impl_;
   float epsilon_;

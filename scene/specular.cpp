@@ -161,7 +161,7 @@ RayHit SpecularSurfaces::IntersectPastPanes(const RayTracer& tracer, Ray* ray, R
     *passed *= glass.model.UnderCoat(Schlick(glass.f0, glass.model.F90(), cosine)) * glass.colour;
     if ((*passed <= 0).all()) break;
     ray->origin = ray->origin + ray->direction * hit.t +
-                  pane.normal * (hit.side == Side::kFront ? -tracer.epsilon() : tracer.epsilon());
+                  pane.normal * (hit.side == Side::kFront ? -tracer.Lift(hit.face) : tracer.Lift(hit.face));
     // A ray with an end still ends there: it may end just above a face.
     if (std::isfinite(ray->t_max)) {
       ray->direction = end - ray->origin;

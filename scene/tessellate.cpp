@@ -17,9 +17,21 @@ namespace lobe {
 
 namespace {
 
-/// Vertices of one surface closer than this, as a fraction of the scene's size, are one. (chosen: some ten
-/// times the rounding of single-precision coordinates)
+/// Vertices of one surface closer than this, as a fraction of its size, are one; in any case if a few
+/// roundings of its coordinates apart. (chosen: some ten times the rounding of single-precision coordinates)
+/// The size is the surface's own: on a plane a million metres wide a teapot keeps its vertices.
 constexpr double kWeldFraction = 1e-6;
+constexpr double kWeldRoundings = 2;
+
+double WeldDistance(const Scene& scene, const std::vector<std::array<uint32_t, 3>>& corners) {
+  Eigen::AlignedBox3f bounds;
+  for (const auto& triangle : corners) {
+    for (const uint32_t v : triangle) bounds.extend(scene.positions[v]);
+  }
+  const float farthest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
+  return std::max(kWeldFraction * double(bounds.diagonal().norm()),
+                  kWeldRoundings * std::ldexp(double(farthest), -23));
+}
 
 /// Midpoints round; an edge that is too long by this fraction is not cut once more.
 constexpr float kEdgeSlack = 1e-5f;
@@ -119,8 +131,10 @@ void Flip(Bisection* bisection) {
 Bisection BisectGroup(const Scene& scene, const Eigen::AlignedBox3f& bounds, const Group& group,
                       const TessellateOptions& options, const std::function<void()>& poll,
                       std::vector<bool>* wide) {
-  Welder welder(bounds, kWeldFraction * bounds.diagonal().norm(), options.crease_angle);
   std::vector<std::array<uint32_t, 3>> triangles;
+  for (const FaceSide& s : group) triangles.push_back(scene.faces[s.face].vertex);
+  Welder welder(bounds, WeldDistance(scene, triangles), options.crease_angle);
+  triangles.clear();
   std::vector<uint32_t> contact;
   triangles.reserve(group.size());
   for (const FaceSide& s : group) {

@@ -1,6 +1,8 @@
 #include "sh/hemisphere_basis.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -63,63 +65,86 @@ LOBE_SIMD_CLONES void EvaluateDouble(int l_max, const double* a, const double* b
   EvaluateOne<double>(l_max, a, b, c, start, x, y, z2, out);
 }
 
-// Lanes are directions: the recurrence runs on kLanes of them side by side.
+constexpr int kBatch = 16;  // directions side by side
+
+// GCC's and Clang's vectors, cut to what the processor has; loads and stores need no alignment.
+template <typename Real>
+struct Wide {
+  typedef Real Lanes __attribute__((vector_size(sizeof(Real) * kBatch)));
+  typedef Real LooseLanes
+      __attribute__((vector_size(sizeof(Real) * kBatch), aligned(sizeof(Real)), may_alias));
+};
+
+// Lanes are directions: the recurrence runs on kBatch of them side by side. Orders are independent of each
+// other, so a processor that looks ahead has several chains under way; what limits is arithmetic and stores.
+// `count`: how many of them are written.
 template <typename Real>
 inline __attribute__((always_inline)) void EvaluateLanes(int l_max, const Real* a, const Real* b,
-                                                         const Real* c, const Real* start, const Real* x,
-                                                         const Real* y, const Real* z, int count, int stride,
-                                                         Real* out) {
-  constexpr int kLanes = 16;
-  Real cos_m[kLanes], sin_m[kLanes], z2[kLanes], q[kLanes], q_before[kLanes], px[kLanes], py[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    const int at = i < count ? i : 0;
-    px[i] = x[at];
-    py[i] = y[at];
-    z2[i] = z[at] * z[at];
-    cos_m[i] = 1;
-    sin_m[i] = 0;
+                                                         const Real* c, const Real* start, const Real* px,
+                                                         const Real* py, const Real* pz, int count,
+                                                         size_t stride, Real* out) {
+  using Lanes = typename Wide<Real>::Lanes;
+  using LooseLanes = typename Wide<Real>::LooseLanes;
+  const auto load = [](const Real* from) -> const LooseLanes& {
+    return *reinterpret_cast<const LooseLanes*>(from);
+  };
+  const auto store = [count](Real* to, const Lanes& v) {
+    if (count == kBatch) {
+      *reinterpret_cast<LooseLanes*>(to) = v;
+    } else {
+      for (int i = 0; i < count; ++i) to[i] = v[i];
+    }
+  };
+  const Lanes x = load(px), y = load(py), z2 = load(pz) * load(pz);
+  {
+    Lanes q = Lanes{} + start[0], before = {};
+    for (int j = 0;;) {  // m = 0, l = 2 j, in place j (2 j + 1) + j
+      store(out + size_t(2 * j * (j + 1)) * stride, q);
+      if (2 * ++j > l_max) break;
+      const int at = StepOffset(l_max, j);
+      const Lanes next = (a[at] * z2 + b[at]) * q - c[at] * before;
+      before = q;
+      q = next;
+    }
   }
-  for (int m = 0; m <= l_max; ++m) {
-    if (m > 0) {
-      for (int i = 0; i < kLanes; ++i) {
-        const Real turned = px[i] * cos_m[i] - py[i] * sin_m[i];
-        sin_m[i] = px[i] * sin_m[i] + py[i] * cos_m[i];
-        cos_m[i] = turned;
-      }
-    }
-    for (int i = 0; i < kLanes; ++i) {
-      q[i] = start[m];
-      q_before[i] = 0;
-    }
-    for (int j = 0; m + 2 * j <= l_max; ++j) {
+  Lanes cosine = x, sine = y;  // (x + iy)^m
+  for (int m = 1; m <= l_max; ++m) {
+    Lanes q = Lanes{} + start[m], before = {};
+    for (int j = 0;;) {
       const int l = m + 2 * j;
-      if (j > 0) {
-        const int at = StepOffset(l_max, j) + m;
-        for (int i = 0; i < kLanes; ++i) {
-          const Real next = (a[at] * z2[i] + b[at]) * q[i] - c[at] * q_before[i];
-          q_before[i] = q[i];
-          q[i] = next;
-        }
-      }
       Real* minus = out + size_t(CoefficientIndex(l, -m)) * stride;
-      Real* plus = out + size_t(CoefficientIndex(l, m)) * stride;
-      if (m > 0) {
-        for (int i = 0; i < count; ++i) minus[i] = q[i] * sin_m[i];
-      }
-      for (int i = 0; i < count; ++i) plus[i] = q[i] * cos_m[i];
+      store(minus, q * sine);
+      store(minus + size_t(m) * stride, q * cosine);
+      ++j;
+      if (l + 2 > l_max) break;
+      const int at = StepOffset(l_max, j) + m;
+      const Lanes next = (a[at] * z2 + b[at]) * q - c[at] * before;
+      before = q;
+      q = next;
     }
+    const Lanes turned = cosine * x - sine * y;
+    sine = cosine * y + sine * x;
+    cosine = turned;
   }
 }
 
 LOBE_SIMD_CLONES void LanesFloat(int l_max, const float* a, const float* b, const float* c,
                                  const float* start, const float* x, const float* y, const float* z,
-                                 int count, int stride, float* out) {
-  EvaluateLanes<float>(l_max, a, b, c, start, x, y, z, count, stride, out);
+                                 int count, size_t stride, float* out) {
+  if (count == kBatch) {
+    EvaluateLanes<float>(l_max, a, b, c, start, x, y, z, kBatch, stride, out);
+  } else {
+    EvaluateLanes<float>(l_max, a, b, c, start, x, y, z, count, stride, out);
+  }
 }
 LOBE_SIMD_CLONES void LanesDouble(int l_max, const double* a, const double* b, const double* c,
                                   const double* start, const double* x, const double* y, const double* z,
-                                  int count, int stride, double* out) {
-  EvaluateLanes<double>(l_max, a, b, c, start, x, y, z, count, stride, out);
+                                  int count, size_t stride, double* out) {
+  if (count == kBatch) {
+    EvaluateLanes<double>(l_max, a, b, c, start, x, y, z, kBatch, stride, out);
+  } else {
+    EvaluateLanes<double>(l_max, a, b, c, start, x, y, z, count, stride, out);
+  }
 }
 
 }  // namespace
@@ -172,15 +197,29 @@ void HemisphereBasis<Real>::Evaluate(Real x, Real y, Real z, Real* out) const {
 template <typename Real>
 void HemisphereBasis<Real>::EvaluateBatch(const Real* x, const Real* y, const Real* z, int count,
                                           Real* out) const {
-  for (int begin = 0; begin < count; begin += 16) {
-    const int lanes = std::min(16, count - begin);
+  const auto evaluate = [&](const Real* px, const Real* py, const Real* pz, int lanes, Real* to) {
     if constexpr (sizeof(Real) == 4) {
-      LanesFloat(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), x + begin, y + begin, z + begin,
-                 lanes, count, out + begin);
+      LanesFloat(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), px, py, pz, lanes, size_t(count),
+                 to);
     } else {
-      LanesDouble(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), x + begin, y + begin, z + begin,
-                  lanes, count, out + begin);
+      LanesDouble(l_max_, a_.data(), b_.data(), c_.data(), start_.data(), px, py, pz, lanes, size_t(count),
+                  to);
     }
+  };
+  if (count < kBatch) {
+    Real padded[3][kBatch] = {};
+    for (int i = 0; i < count; ++i) {
+      padded[0][i] = x[i];
+      padded[1][i] = y[i];
+      padded[2][i] = z[i];
+    }
+    evaluate(padded[0], padded[1], padded[2], count, out);
+    return;
+  }
+  for (int begin = 0; begin < count; begin += kBatch) {
+    // What is left at the end is done as the last sixteen; some are written twice, the same both times.
+    const int at = std::min(begin, count - kBatch);
+    evaluate(x + at, y + at, z + at, kBatch, out + at);
   }
 }
 

@@ -42,7 +42,9 @@ class HemisphereBasis {
   /// Writes H_k(x, y, z) for k < size(). (x, y, z) is a unit vector; only z^2 enters.
   void Evaluate(Real x, Real y, Real z, Real* out) const;
 
-  /// Many directions as separate coordinate arrays: out[k * count + i] = H_k(w_i). Vectorised over i.
+  /// Many directions as separate coordinate arrays: out[k * count + i] = H_k(w_i). Sixteen directions run
+  /// side by side (docs/validation.md#speed), so batches of 16, 32, ... are best, as long as `out` stays in
+  /// the first-level cache; from 16 on the last few are done as the last sixteen.
   void EvaluateBatch(const Real* x, const Real* y, const Real* z, int count, Real* out) const;
 
  private:

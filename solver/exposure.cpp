@@ -105,7 +105,7 @@ bool StoresLight(const Material& material, Side side) {
 
 // Where light arrives or starts; `side` is 2 * piece + side.
 struct LitPoint {
-  uint32_t side;
+  uint32_t side, face;
   Vec3 position, normal;
 };
 
@@ -124,8 +124,8 @@ std::optional<Sighting> FindInSight(const Scene& scene, const RayTracer& tracer,
     const Vec3 normal = scene.GeometricNormal(face) * (side == Side::kFront ? 1.0f : -1.0f);
     const float u = random.Next(), v = random.Next();
     const Vec3 position = PointOnTriangle(scene.Corners(face), u, v);
-    const Vec3 at = position + normal * tracer.epsilon();
-    const Vec3 to = lit.position + lit.normal * tracer.epsilon() - at;
+    const Vec3 at = position + normal * tracer.Lift(f);
+    const Vec3 to = lit.position + lit.normal * tracer.Lift(lit.face) - at;
     if (to.dot(normal) > 0 && to.dot(lit.normal) < 0 && !tracer.Occluded({at, 0.0f, to, 1.0f})) {
       return Sighting{f, position, normal};
     }
@@ -190,22 +190,28 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
     tbb::parallel_for(0, kWalksPerRound, [&](int walk) {
       if (poll && walk % 64 == 0) poll();
       RandomStream random(Mix(Mix(seed, 0x11f7), uint64_t(round) * kWalksPerRound + walk));
-      const Emitter& e = emitters[choice.At((walk + random.Next()) / kWalksPerRound)];
+      // Every other walk starts at any emitter alike: a room is lit by its own lamp, however dim that is
+      // beside those of other rooms.
+      const float u = (walk + random.Next()) / kWalksPerRound;
+      const size_t any = std::min(size_t(u * float(emitters.size())), emitters.size() - 1);
+      const Emitter& e = emitters[walk % 2 == 0 ? choice.At(u) : any];
       Vec3 at = PointOnTriangle(e.corners, random.Next(), random.Next());
       Vec3 normal = e.normal;
-      met[walk].push_back({2 * piece[e.face] + uint32_t(e.side), at, normal});
+      uint32_t face = e.face;
+      met[walk].push_back({2 * piece[face] + uint32_t(e.side), face, at, normal});
       for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
         const Vec3 w = Frame(normal).ToWorld(CosineDirection(random.Next(), random.Next()));
-        const RayHit hit = tracer.Intersect(RayFrom(at, normal, w, tracer.epsilon()));
+        const RayHit hit = tracer.Intersect(RayFrom(at, normal, w, tracer.Lift(face)));
         if (!hit.hit() || (hit.side == Side::kBack && !double_sided(hit.face))) break;
-        const auto p = scene.Corners(scene.faces[hit.face]);
+        face = hit.face;
+        const auto p = scene.Corners(scene.faces[face]);
         at = p[0] * (1 - hit.u - hit.v) + p[1] * hit.u + p[2] * hit.v;
         normal = scene.GeometricNormal(scene.faces[hit.face]);
         if (hit.side == Side::kBack) normal = -normal;
         const uint32_t met_side = 2 * piece[hit.face] + uint32_t(hit.side);
-        met[walk].push_back({met_side, at, normal});
+        met[walk].push_back({met_side, face, at, normal});
         if (LetsThrough(scene.material(scene.faces[hit.face]))) {
-          met[walk].push_back({met_side ^ 1, at, -normal});
+          met[walk].push_back({met_side ^ 1, face, at, -normal});
           // However little goes through, what lies behind is lit; so a coin decides, not the albedo.
           if (random.Next() < 0.5f) normal = -normal;
         }
@@ -246,7 +252,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
       lit_piece[side] = true;
       if (!LetsThrough(scene.material(scene.faces[sightings[i]->face]))) continue;
       lit_piece[side ^ 1] = true;
-      points.push_back({side ^ 1, sightings[i]->position, -sightings[i]->normal});
+      points.push_back({side ^ 1, sightings[i]->face, sightings[i]->position, -sightings[i]->normal});
     }
   }
 
@@ -280,7 +286,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
     const Emitter& e = emitters[fate.emitter = choice.At((i + random.Next()) / kProbes)];
     const Vec3 w = Frame(e.normal).ToWorld(CosineDirection(random.Next(), random.Next()));
     Ray ray =
-        RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.epsilon());
+        RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.Lift(e.face));
     Rgb throughput = Rgb::Constant(1);
     MediaStack media;
     for (int mirror = 0, glass = 0; mirror <= Links::kMaxMirrors && glass <= Links::kMaxGlass;) {
@@ -315,7 +321,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
         throughput *= through ? Rgb(passed / chance) : Rgb(reflected / (1 - chance));
         const SpecularWay& on = through ? ways.transmission : ways.reflection;
         if (through) media = ways.beyond;
-        ray = RayFrom(at.position, on.outward, on.direction, tracer.epsilon());
+        ray = RayFrom(at.position, on.outward, on.direction, tracer.Lift(hit.face));
         ++glass;
         continue;
       }
@@ -327,7 +333,8 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
       if (!lobes) return;
       const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
       throughput *= lobes->SentOn(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
-      ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at), tracer.epsilon());
+      ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at),
+                    tracer.Lift(hit.face));
       ++mirror;
     }
     fate.blocked += throughput;

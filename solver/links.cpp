@@ -73,6 +73,7 @@ struct Links::Tracing {
   const RayTracer& tracer;
   const std::vector<MaterialLobes>& materials;
   const Options& options;
+  const std::vector<float> lifts = tracer.PatchLifts(mesh);
   const SpecularSurfaces specular{scene};
   std::vector<uint8_t> mirror = {};       // per material: links go on there, being opaque
   std::vector<uint8_t> specular_at = {};  // per material: mirror or glass
@@ -119,7 +120,7 @@ struct Links::Tracing {
     directions.Start(node, options.seed);
     const Frame frame(mesh.node_normal[node]);
     const Vec3& outward = mesh.node_sample_normal[node];
-    const Vec3 origin = mesh.node_sample_position[node] + outward * tracer.epsilon();
+    const Vec3 origin = mesh.node_sample_position[node] + outward * lifts[mesh.node_patch[node]];
     const size_t count = size_t(pattern.count());
     for (auto* v : {&scratch.x, &scratch.y, &scratch.z}) v->resize(count);
     scratch.hits.resize(count);
@@ -218,8 +219,8 @@ struct Links::Tracing {
     const HitPoint at = FindHitPoint(scene, mesh, branch.ray, hit, where);
     const Vec3 wo = -branch.ray.direction;
     branch.throughput *= materials[material].SentOn(std::clamp(wo.dot(at.normal), 0.0f, 1.0f));
-    branch.ray = {at.position + at.geometric_normal * tracer.epsilon(), 0.0f, MirrorDirection(wo, at),
-                  std::numeric_limits<float>::infinity()};
+    branch.ray = {at.position + at.geometric_normal * tracer.Lift(branch.hit.face), 0.0f,
+                  MirrorDirection(wo, at), std::numeric_limits<float>::infinity()};
     branch.last_mirror = mesh.element_patch[where.element];
     ++branch.mirrors;
     return true;
@@ -247,16 +248,16 @@ struct Links::Tracing {
     const auto reflect = [&](Branch& to, float weight) {
       to.throughput *= ways.reflection.weight * weight;
       to.bent = true;
-      to.ray = {at.position + ways.reflection.outward * tracer.epsilon(), 0.0f, ways.reflection.direction,
-                std::numeric_limits<float>::infinity()};
+      to.ray = {at.position + ways.reflection.outward * tracer.Lift(branch.hit.face), 0.0f,
+                ways.reflection.direction, std::numeric_limits<float>::infinity()};
     };
     const auto transmit = [&](Branch& to, float weight) {
       to.throughput *= ways.transmission.weight * weight;
       to.basic *= ways.basic;
       to.bent |= !ways.straight;
       to.media = ways.beyond;
-      to.ray = {at.position + ways.transmission.outward * tracer.epsilon(), 0.0f, ways.transmission.direction,
-                std::numeric_limits<float>::infinity()};
+      to.ray = {at.position + ways.transmission.outward * tracer.Lift(branch.hit.face), 0.0f,
+                ways.transmission.direction, std::numeric_limits<float>::infinity()};
     };
     if (branch.share * std::min(reflects, passes) >= kSplit) {
       Branch other = branch;

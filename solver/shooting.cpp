@@ -30,6 +30,12 @@ constexpr float kGlossyCaution = 4.0f;
 constexpr float kSeenSmall = 0.7f;
 constexpr float kPerThreshold = 1.4f;
 
+// If what is not hidden was expected to bring less than this share, it had too few rays. (chosen) The rays
+// are shared out anew without what they did not see, which has brought nothing and will bring nothing: so no
+// estimate is biased by it. So many times at most, for lamps ever dimmer.
+constexpr double kTooFewRays = 0.1;
+constexpr int kMostSharings = 16;
+
 // Halvings below a root; 2^40 pieces.
 constexpr int kMaxDepth = 40;
 
@@ -175,7 +181,8 @@ Receiver::Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<
       tracer_(tracer),
       materials_(materials),
       panes_(specular && specular->any_pane() ? specular : nullptr),
-      basis_(kMaxBasisSize) {}
+      basis_(kMaxBasisSize),
+      lifts_(tracer.PatchLifts(mesh)) {}
 
 void Receiver::Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
                      const Vec3& normal, const Cell& parent) {
@@ -208,8 +215,9 @@ void Receiver::Split(const ShootingField& field, const ShootingField::Root& root
   }
 }
 
-void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node,
-                    const Cell& cell, float weight, RandomStream& random, Received& work) {
+void Receiver::Emit(const ShootingField& field, uint32_t root_index, uint32_t node, const Cell& cell,
+                    float weight, RandomStream& random, Received& work) {
+  const ShootingField::Root& root = field.roots()[root_index];
   const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
   const TriangleLight light = LightOfTriangle(point, normal, cell.corners);
   if (!(light.irradiance > 0)) return;
@@ -233,15 +241,14 @@ void Receiver::Emit(const ShootingField& field, const ShootingField::Root& root,
     element = mesh_.cells[at].element;
     radiance = field.cell_radiance(at);
   }
-  const float epsilon = tracer_.epsilon();
-  const Vec3 from = point + mesh_.node_sample_normal[node] * epsilon;
-  const Vec3 to = target + root.normal * epsilon;
+  const Vec3 from = point + mesh_.node_sample_normal[node] * lifts_[mesh_.node_patch[node]];
+  const Vec3 to = target + root.normal * tracer_.Lift(root.corners);
   if (root.glossy) {
     radiance = field.Radiance(element, weights.data(), (from - to).normalized(), basis_.data());
     ++work.lobe_reads;
   }
   rays_.push_back({from, 0.0f, to - from, 1.0f});
-  deltas_.push_back({light.direction, radiance * (light.irradiance * weight), root.mirror});
+  deltas_.push_back({light.direction, radiance * (light.irradiance * weight), root_index, root.mirror});
 }
 
 Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
@@ -251,7 +258,7 @@ Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
   if (!hit.hit()) return Rgb::Zero();
   const auto where = mesh_.Locate(hit.face, hit.side, hit.u, hit.v);
   if (where.element == kNone || mesh_.element_patch[where.element] != mirror.patch) return Rgb::Zero();
-  const Vec3 at = piece.origin + piece.direction * hit.t + mirror.normal * tracer_.epsilon();
+  const Vec3 at = piece.origin + piece.direction * hit.t + mirror.normal * tracer_.Lift(hit.face);
   const Vec3 lamp = mirror.Image(ray.origin + ray.direction);
   const Ray beyond{at, 0.0f, lamp - at, 1.0f};
   if (panes_) {
@@ -263,7 +270,9 @@ Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
   return materials_[mesh_.patches[mirror.patch].material].SentOn(std::clamp(cosine, 0.0f, 1.0f)) * passed;
 }
 
-bool Receiver::EmitEvenly(const ShootingField::Root& root, uint32_t node, int samples, RandomStream& random) {
+bool Receiver::EmitEvenly(const ShootingField& field, uint32_t root_index, uint32_t node, int samples,
+                          RandomStream& random) {
+  const ShootingField::Root& root = field.roots()[root_index];
   const Vec3 &point = mesh_.node_sample_position[node], &normal = mesh_.node_normal[node];
   const auto& p = root.corners;
   const Vec3 middle = (p[0] + p[1] + p[2]) * (1.0f / 3.0f) - point;
@@ -273,11 +282,11 @@ bool Receiver::EmitEvenly(const ShootingField::Root& root, uint32_t node, int sa
     return false;
   }
   const float irradiance = LightOfTriangle(point, normal, p).irradiance;
-  const float epsilon = tracer_.epsilon();
-  const Vec3 from = point + mesh_.node_sample_normal[node] * epsilon;
+  const Vec3 from = point + mesh_.node_sample_normal[node] * lifts_[mesh_.node_patch[node]];
+  const Vec3 lift = root.normal * tracer_.Lift(root.corners);
   const float u0 = random.Next(), v0 = random.Next();
   const size_t first = rays_.size();
-  float sum = 0;
+  double sum = 0;  // of up to millions
   for (int i = 0; i < samples; ++i) {
     // Plastic-number sequence (Roberts 2018), shifted at random, onto the triangle.
     float u = u0 + 0.7548777f * float(i), v = v0 + 0.5698403f * float(i);
@@ -289,12 +298,12 @@ bool Receiver::EmitEvenly(const ShootingField::Root& root, uint32_t node, int sa
     const float kernel = to.dot(normal) * -to.dot(root.normal) / (r2 * r2);
     if (!(kernel > 0)) continue;  // a corner beyond one of the horizons
     sum += kernel;
-    rays_.push_back({from, 0.0f, target + root.normal * epsilon - from, 1.0f});
-    deltas_.push_back({to / std::sqrt(r2), root.radiance * kernel, root.mirror});
+    rays_.push_back({from, 0.0f, target + lift - from, 1.0f});
+    deltas_.push_back({to / std::sqrt(r2), root.radiance * kernel, root_index, root.mirror});
   }
   if (!(sum > 0)) return false;
   // Together they bring what the whole triangle brings.
-  for (size_t i = first; i < deltas_.size(); ++i) deltas_[i].irradiance *= irradiance / sum;
+  for (size_t i = first; i < deltas_.size(); ++i) deltas_[i].irradiance *= float(irradiance / sum);
   return true;
 }
 
@@ -309,8 +318,9 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   const auto& roots = field.roots();
   expected_.assign(roots.size(), 0.0f);
   float total = 0;
-  for (size_t i = 0; i < roots.size(); ++i) {
+  for (uint32_t i = 0; i < roots.size(); ++i) {
     const auto& root = roots[i];
+    if (skipped_[i]) continue;
     if ((point - root.corners[0]).dot(root.normal) <= 0) continue;
     const float light = EstimateTriangleLight(point, normal, root.corners).irradiance;
     expected_[i] = light * std::abs(root.radiance.sum()) * (root.glossy ? kGlossyCaution : 1);
@@ -324,11 +334,11 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   const float portion = kSampledBelow * threshold;
   float filled = random.Next() * portion;
 
-  for (size_t i = 0; i < roots.size(); ++i) {
+  for (uint32_t i = 0; i < roots.size(); ++i) {
     if (!(expected_[i] > 0)) continue;
     const auto& root = roots[i];
     if (root.cell == kNone && expected_[i] > threshold &&
-        EmitEvenly(root, node, int(std::ceil(kPerThreshold * expected_[i] / threshold)), random)) {
+        EmitEvenly(field, i, node, int(std::ceil(kPerThreshold * expected_[i] / threshold)), random)) {
       continue;
     }
     stack_.push_back({root.corners,
@@ -358,54 +368,79 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
         filled -= portion;
         weight = portion / cell.expected;
       }
-      Emit(field, root, node, cell, weight, random, work);
+      Emit(field, i, node, cell, weight, random, work);
     }
   }
 }
 
-Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
-                          uint64_t seed, float* out) {
-  Received work;
-  deltas_.clear();
-  rays_.clear();
-  Cut(node, field, samples, received_before, seed, work);
-  work.rays = rays_.size();
-  if (rays_.empty()) return work;
-
+uint64_t Receiver::Trace(const ShootingField& field) {
   occluded_.resize(rays_.size());
-  if (field.mirrors().empty() && !panes_) {
+  if (!field.mirrors().empty()) {
+    for (size_t i = 0; i < rays_.size(); ++i) {
+      deltas_[i].irradiance *= ByMirror(field.mirrors()[deltas_[i].mirror], rays_[i]);
+      occluded_[i] = (deltas_[i].irradiance <= 0).all();
+    }
+    return 2 * rays_.size();
+  }
+  if (!panes_) {
     tracer_.Occluded(rays_, occluded_, /*coherent=*/true);
-  } else if (field.mirrors().empty()) {
+  } else {
     for (size_t i = 0; i < rays_.size(); ++i) {
       const Rgb passed = panes_->SeeThrough(tracer_, rays_[i]);
       deltas_[i].irradiance *= passed;
       occluded_[i] = (passed <= 0).all();
     }
-  } else {
-    for (size_t i = 0; i < rays_.size(); ++i) {
-      deltas_[i].irradiance *= ByMirror(field.mirrors()[deltas_[i].mirror], rays_[i]);
-      occluded_[i] = (deltas_[i].irradiance <= 0).all();
-    }
-    work.rays = 2 * rays_.size();
+  }
+  return rays_.size();
+}
+
+bool Receiver::SkipHidden() {
+  enum : uint8_t { kNotAsked, kHidden, kSeen };
+  seen_.assign(expected_.size(), kNotAsked);
+  for (size_t i = 0; i < deltas_.size(); ++i) {
+    uint8_t& seen = seen_[deltas_[i].root];
+    seen = std::max<uint8_t>(seen, occluded_[i] ? kHidden : kSeen);
+  }
+  double hidden = 0, rest = 0;
+  for (size_t root = 0; root < seen_.size(); ++root) {
+    (seen_[root] == kHidden ? hidden : rest) += double(expected_[root]);
+  }
+  if (!(rest > 0) || rest >= kTooFewRays * (hidden + rest)) return false;
+  for (size_t root = 0; root < seen_.size(); ++root) skipped_[root] |= seen_[root] == kHidden;
+  return true;
+}
+
+Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
+                          uint64_t seed, float* out) {
+  Received work;
+  skipped_.assign(field.roots().size(), 0);
+  for (int sharing = 0; sharing < kMostSharings; ++sharing) {
+    deltas_.clear();
+    rays_.clear();
+    Cut(node, field, samples, received_before, sharing == 0 ? seed : Mix(seed, uint64_t(sharing)), work);
+    if (rays_.empty()) return work;
+    work.rays += Trace(field);
+    if (!SkipHidden()) break;
   }
 
   const MaterialLobes& material = materials_[mesh_.patches[mesh_.node_patch[node]].material];
   const Vec3& normal = mesh_.node_normal[node];
+  // In double: of a million floats, one after the other, per cents would be lost.
+  using Sum = Eigen::Array3d;
+  Sum delivered = Sum::Zero(), reflected = Sum::Zero(), mirrored = Sum::Zero(), through = Sum::Zero();
+  const auto add = [&](const Rgb& irradiance, float cosine) {
+    delivered += irradiance.cast<double>();
+    if (material.sends_on()) mirrored += (irradiance * material.SentOn(cosine)).cast<double>();
+    if (material.transmits()) through += (irradiance * material.TransmissionAlbedo(cosine)).cast<double>();
+  };
   if (material.diffuse()) {
     for (size_t i = 0; i < deltas_.size(); ++i) {
-      if (occluded_[i]) continue;
-      work.delivered += deltas_[i].irradiance;
-      if (material.sends_on()) {
-        work.mirrored += deltas_[i].irradiance * material.SentOn(deltas_[i].direction.dot(normal));
-      }
-      if (material.transmits()) {
-        work.through += deltas_[i].irradiance * material.TransmissionAlbedo(deltas_[i].direction.dot(normal));
-      }
+      if (!occluded_[i]) add(deltas_[i].irradiance, deltas_[i].direction.dot(normal));
     }
-    work.reflected = material.DiffuseAlbedo() * work.delivered;
+    reflected = material.DiffuseAlbedo().cast<double>() * delivered;
     // Radiance albedo E / pi, as the coefficient of the constant function 1 / sqrt(2 pi).
     if (material.base.l_max >= 0) {
-      for (int c = 0; c < 3; ++c) out[c] += work.reflected[c] * std::sqrt(2.0f / std::numbers::pi_v<float>);
+      for (int c = 0; c < 3; ++c) out[c] += float(reflected[c] * std::sqrt(2.0 / std::numbers::pi));
     }
   } else {
     const Frame frame(normal);
@@ -415,15 +450,15 @@ Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples
       const Vec3 wi = frame.ToLocal(deltas_[i].direction);
       moments_.Add(wi, deltas_[i].irradiance);
       ++work.lobe_writes;
-      work.delivered += deltas_[i].irradiance;
-      work.reflected += deltas_[i].irradiance * material.Albedo(wi.z());
-      if (material.sends_on()) {
-        work.mirrored += deltas_[i].irradiance * material.SentOn(wi.z());
-      }
-      if (material.transmits()) work.through += deltas_[i].irradiance * material.TransmissionAlbedo(wi.z());
+      reflected += (deltas_[i].irradiance * material.Albedo(wi.z())).cast<double>();
+      add(deltas_[i].irradiance, wi.z());
     }
     moments_.Finish(out, out + 3 * material.base.count());
   }
+  work.delivered = delivered.cast<float>();
+  work.reflected = reflected.cast<float>();
+  work.mirrored = mirrored.cast<float>();
+  work.through = through.cast<float>();
   work.absorbed = work.delivered - work.reflected - work.mirrored - work.through;
   return work;
 }

@@ -70,7 +70,9 @@ class Receiver {
   /// one shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes,
   /// zeroed by the caller). `received_before`: sum over channels of the irradiance so far; cells that bring
   /// less than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
-  /// `seed` decides which point of a cell stands for it.
+  /// `seed` decides which point of a cell stands for it. If what promised nearly all of the light turns out
+  /// to be hidden, the rays are shared out again among the rest: a lamp behind a wall, however bright, takes
+  /// nothing from the lamp in the room.
   Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
                   uint64_t seed, float* out);
 
@@ -91,19 +93,25 @@ class Receiver {
   struct Delta {
     Vec3 direction;
     Rgb irradiance;
-    uint32_t mirror;
+    uint32_t root, mirror;
   };
   // Fresnel factor of the way over `mirror` to the image that a ray ends at, times what panes in it let
   // through; black where something else is in it.
   Rgb ByMirror(const PlanarMirror& mirror, const Ray& ray) const;
+  // Fills deltas_ and rays_ from all roots that are not in skipped_.
   void Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
            Received& work);
+  // Fills occluded_, and takes what lies in the way off deltas_. Returns how many rays that took.
+  uint64_t Trace(const ShootingField& field);
+  // Puts roots of which nothing was seen into skipped_, if all others together had hardly any rays for it.
+  bool SkipHidden();
   void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
              const Vec3& normal, const Cell& parent);
   // All of an emitter that is seen small, as `samples` points; false if it is not seen small.
-  bool EmitEvenly(const ShootingField::Root& root, uint32_t node, int samples, RandomStream& random);
-  void Emit(const ShootingField& field, const ShootingField::Root& root, uint32_t node, const Cell& cell,
-            float weight, RandomStream& random, Received& work);
+  bool EmitEvenly(const ShootingField& field, uint32_t root, uint32_t node, int samples,
+                  RandomStream& random);
+  void Emit(const ShootingField& field, uint32_t root, uint32_t node, const Cell& cell, float weight,
+            RandomStream& random, Received& work);
 
   const Mesh& mesh_;
   const RayTracer& tracer_;
@@ -114,7 +122,9 @@ class Receiver {
   std::vector<Ray> rays_;
   std::vector<uint8_t> occluded_;
   std::vector<float> basis_;
-  std::vector<float> expected_;  // per root
+  std::vector<float> expected_;          // per root
+  std::vector<uint8_t> skipped_, seen_;  // per root; the latter for SkipHidden
+  std::vector<float> lifts_;             // per patch
   IncidentMoments moments_;
 };
 
