@@ -6,6 +6,7 @@
 #include <mutex>
 #include <span>
 #include <sstream>
+#include <string>
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -52,7 +53,7 @@ struct Renderer::Impl {
   EyeShader shader;
 
   std::mutex tiles_mutex;
-  std::map<std::vector<uint8_t>, std::unique_ptr<TileRenderer>> tiles;  // by what they handle
+  std::map<std::string, std::unique_ptr<TileRenderer>> tiles;  // by what they handle, a letter a side
 
   explicit Impl(const Solution& s) : solution(s), shader(s) {}
 
@@ -75,7 +76,7 @@ struct Renderer::Impl {
       handled.insert(handled.end(), 2, stored);
     }
     const std::lock_guard lock(tiles_mutex);
-    auto& out = tiles[handled];
+    auto& out = tiles[std::string(handled.begin(), handled.end())];
     if (!out) {
       out = std::make_unique<TileRenderer>(solution, shader.paths().tracer(), shader.stored().locator(),
                                            std::move(handled));
