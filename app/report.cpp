@@ -62,7 +62,7 @@ std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& opt
   for (const Material& m : scene.materials) {
     const MaterialLobes lobes(m.reflectance, options, cache);
     rows.push_back({m.name, Describe(m.reflectance), lobes.kind(), lobes.transmits(), lobes.base.l_max,
-                    lobes.gloss.l_max, lobes.gloss.error, m.emission});
+                    lobes.gloss.l_max, lobes.gloss.error.total, m.emission});
   }
   return rows;
 }

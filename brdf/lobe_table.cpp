@@ -141,21 +141,20 @@ ScalarTable ScalarTable::Scaled(double factor) const {
   return out;
 }
 
-double ScalarTable::Error(int l) const { return ErrorWithin(*this, l); }
+double ScalarTable::FluxWeight(int j) const {
+  // cos sin d theta = c |dc|, c = (1 - t^2)^2; equal steps in t.
+  const double t = double(j) / (knots - 1), c = IncidenceSpline::CosineOfParameter(t);
+  return std::sqrt(std::numbers::pi) * zernike(0, j) * c * (1.0 - t * t) * t;
+}
 
-double ScalarTable::ErrorWithin(const ScalarTable& whole, int l) const {
+double ScalarTable::Error(int l) const {
   const int rows = RowCount(std::min(l, l_max));
-  const IncidenceSpline spline(knots);
   double sum = 0, weights = 0;
   for (int j = 0; j < knots; ++j) {
-    // albedo cos sin d theta = albedo c |dc|, c = (1 - t^2)^2; equal steps in t.
-    const double t = double(j) / (knots - 1), c = spline.KnotCosine(j);
-    const double flux = std::sqrt(std::numbers::pi) * whole.zernike(0, j);
-    const double w = flux * c * (1.0 - t * t) * t;
+    if (!(norm2[j] > 0)) continue;
+    const double w = FluxWeight(j);
     const double lost2 = std::max(0.0, norm2[j] - zernike.col(j).head(rows).squaredNorm());
-    const double whole2 = &whole == this ? norm2[j] : whole.zernike.col(j).squaredNorm();
-    if (!(whole2 > 0)) continue;
-    sum += w * std::sqrt(lost2 / whole2);
+    sum += w * std::sqrt(lost2 / norm2[j]);
     weights += w;
   }
   return weights > 0 ? sum / weights : 0.0;
