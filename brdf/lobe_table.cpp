@@ -54,8 +54,11 @@ class AlbedoAngles {
   double width_, y_max_;
 };
 
-// Tables of f, and of f (1 - V.H)^5 if there are two of them. One pass over the points serves both.
-void BuildParts(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots,
+// Values of all functions at one pair of directions.
+using Parts = std::function<void(const Vec3d& wi, const Vec3d& wo, double* values)>;
+
+// Tables of as many functions. One pass over the points serves them all.
+void BuildParts(const Parts& f, int l_max, const HalfVectorRule& rule, int knots,
                 const std::vector<ScalarTable*>& tables, Eigen::VectorXd* inner) {
   if (l_max < 0) throw std::invalid_argument("ScalarTable: l_max is negative");
   if (knots <= 0) knots = ScalarTable::DefaultKnots(l_max);
@@ -78,10 +81,10 @@ void BuildParts(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int 
     const Vec3d wi(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
     const OutgoingPoints points = rule.Points(cosine);
     Eigen::MatrixXd value(points.size(), parts);
+    std::vector<double> at_point(parts);
     for (int i = 0; i < points.size(); ++i) {
-      const Vec3d wo(points.x[i], points.y[i], points.z[i]);
-      value(i, 0) = f(wi, wo);
-      if (parts > 1) value(i, 1) = value(i, 0) * SchlickRise(wi, wo);
+      f(wi, Vec3d(points.x[i], points.y[i], points.z[i]), at_point.data());
+      for (int part = 0; part < parts; ++part) value(i, part) = at_point[part];
     }
     const auto measure = Eigen::Map<const Eigen::ArrayXd>(points.z.data(), points.size()) *
                          Eigen::Map<const Eigen::ArrayXd>(points.weight.data(), points.size());
@@ -113,13 +116,31 @@ int ScalarTable::RowIndex(int n, int m) { return (n == 0 ? 0 : RowCount(n - 1)) 
 
 ScalarTable ScalarTable::Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots) {
   ScalarTable table;
-  BuildParts(f, l_max, rule, knots, {&table}, nullptr);
+  BuildParts([&](const Vec3d& wi, const Vec3d& wo, double* value) { *value = f(wi, wo); }, l_max, rule, knots,
+             {&table}, nullptr);
   return table;
+}
+
+std::vector<ScalarTable> ScalarTable::BuildChannels(const RgbBrdf& f, int l_max, const HalfVectorRule& rule,
+                                                    int knots) {
+  std::vector<ScalarTable> tables(3);
+  BuildParts(
+      [&](const Vec3d& wi, const Vec3d& wo, double* values) {
+        const Rgb colour = f(wi, wo);
+        std::copy_n(colour.data(), 3, values);
+      },
+      l_max, rule, knots, {&tables[0], &tables[1], &tables[2]}, nullptr);
+  return tables;
 }
 
 SchlickTables SchlickTables::Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots) {
   SchlickTables out;
-  BuildParts(f, l_max, rule, knots, {&out.plain, &out.rising}, &out.inner);
+  BuildParts(
+      [&](const Vec3d& wi, const Vec3d& wo, double* values) {
+        values[0] = f(wi, wo);
+        values[1] = values[0] * SchlickRise(wi, wo);
+      },
+      l_max, rule, knots, {&out.plain, &out.rising}, &out.inner);
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "brdf/hemisphere_integral.h"
 #include "brdf/incidence_spline.h"
+#include "brdf/rgb.h"
 
 namespace lobe {
 
@@ -30,6 +31,8 @@ struct FineAngle {
 
 /// A scalar reflectance f(wi, wo) in sr^-1, local frame, without the cosine.
 using ScalarBrdf = std::function<double(const Vec3d& wi, const Vec3d& wo)>;
+/// Three at once, for data whose channels go different ways.
+using RgbBrdf = std::function<Rgb(const Vec3d& wi, const Vec3d& wo)>;
 
 /// f projected into lobes: for each incident angle the cos-weighted least-squares fit of f over wo
 /// (docs/conventions.md#projection). Isotropy leaves only cos(m phi) terms at incident azimuth 0.
@@ -63,6 +66,9 @@ struct ScalarTable {
 
   /// Builds at degree l_max with `knots` knots (0: DefaultKnots). `rule.width` must suit f.
   static ScalarTable Build(const ScalarBrdf& f, int l_max, const HalfVectorRule& rule, int knots = 0);
+  /// One table a channel; f is asked once for all.
+  static std::vector<ScalarTable> BuildChannels(const RgbBrdf& f, int l_max, const HalfVectorRule& rule,
+                                                int knots = 0);
   /// A third more than lobes of that degree need for an error of 1 % between knots, however sharp what they
   /// stand for (docs/validation.md#knots).
   static int DefaultKnots(int l_max) { return 9 + l_max; }

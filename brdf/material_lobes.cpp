@@ -119,11 +119,11 @@ std::shared_ptr<const SchlickTables> TableCache::Get(const std::string& key,
   return tables;
 }
 
-std::shared_ptr<const ScalarTable> TableCache::GetPlain(const std::string& key,
-                                                        const std::function<ScalarTable()>& build) {
-  auto& table = plain_tables_[key];
-  if (!table) table = std::make_shared<ScalarTable>(build());
-  return table;
+std::shared_ptr<const std::vector<ScalarTable>> TableCache::GetPlain(
+    const std::string& key, const std::function<std::vector<ScalarTable>()>& build) {
+  auto& tables = plain_tables_[key];
+  if (!tables) tables = std::make_shared<std::vector<ScalarTable>>(build());
+  return tables;
 }
 
 Rgb PartLobes::Albedo(float cos_theta_i) const {
@@ -148,10 +148,9 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   } else if (const auto* oren = std::get_if<OrenNayar>(&reflectance); oren && oren->sigma == 0) {
     diffuse_albedo_ = LambertPart(base, oren->albedo);
   }
-  if (const auto recipes = BaseRecipes(reflectance); !recipes.empty()) {
-    base_plan = PlanBase(recipes, base_cap, cache);
-  }
-  Plan gloss_plan = PlanGloss(GlossRecipes(reflectance), cap, options, cache);
+  if (const auto recipe = BaseRecipe(reflectance)) base_plan = PlanBase(*recipe, base_cap, cache);
+  Plan gloss_plan;
+  if (const auto recipe = GlossRecipe(reflectance)) gloss_plan = PlanGloss(*recipe, cap, options, cache);
   base_plan.ChooseKnots(kBaseError);
   gloss_plan.ChooseKnots(options.error);
   spline_ = std::make_shared<IncidenceSpline>(std::max({kFewestKnots, base_plan.knots, gloss_plan.knots}));
@@ -229,51 +228,45 @@ MaterialLobes::Plan MaterialLobes::PlanMetallicRoughnessBase(const MetallicRough
   return plan;
 }
 
-MaterialLobes::Plan MaterialLobes::PlanBase(const std::vector<LobeRecipe>& recipes, int cap,
-                                            TableCache& cache) {
+MaterialLobes::Plan MaterialLobes::PlanBase(const LobeRecipe& recipe, int cap, TableCache& cache) {
+  const auto tables = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap), [&] {
+    ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule);
+    for (int i = 0; recipe.albedo && i <= ScalarTable::kFine; ++i) {
+      built.albedo[i] = recipe.albedo(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
+    }
+    return std::vector<ScalarTable>{std::move(built)};
+  });
   Plan plan;
-  for (const LobeRecipe& recipe : recipes) {
-    const auto table = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap), [&] {
-      ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule);
-      for (int i = 0; recipe.albedo && i <= ScalarTable::kFine; ++i) {
-        built.albedo[i] = recipe.albedo(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
-      }
-      return built;
-    });
-    plan.l_max = DegreeWithin(*table, cap, kBaseError);
-    plan.judged = {*table};
-    for (int c = 0; c < 3; ++c) plan.channels.push_back(table->Scaled(recipe.plain[c]));
-  }
+  plan.judged = *tables;
+  plan.l_max = DegreeWithin(plan.judged[0], cap, kBaseError);
+  for (int c = 0; c < 3; ++c) plan.channels.push_back(plan.judged[0].Scaled(recipe.plain[c]));
   return plan;
 }
 
-MaterialLobes::Plan MaterialLobes::PlanGloss(const std::vector<LobeRecipe>& recipes, int cap,
-                                             const LobeOptions& options, TableCache& cache) {
-  Plan plan;
-  if (recipes.empty()) return plan;
-  // Degree and kind follow from f alone, so that colours share tables. Knots, and the error stated, are the
-  // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing
-  // angles.
+MaterialLobes::Plan MaterialLobes::PlanGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options,
+                                             TableCache& cache) {
+  const std::string key = TableKey(recipe.key, cap);
   const bool forced = options.force_l_max >= 0;
   bool within = true;
-  for (const LobeRecipe& recipe : recipes) {
-    const std::string key = TableKey(recipe.key, cap);
-    const auto degree_of = [&](const ScalarTable& f) {
-      const int degree = forced ? cap : DegreeWithin(f, cap, options.error);
-      within = within && f.Error(degree) <= kTruncationShare * options.error;
-      return degree;
-    };
-    if (recipes.size() == 3) {
-      const auto table = cache.GetPlain(key, [&] { return ScalarTable::Build(recipe.f, cap, recipe.rule); });
-      plan.l_max = std::max(plan.l_max, degree_of(*table));
-      plan.channels.push_back(*table);
-      plan.judged.push_back(*table);
-    } else {
-      const auto tables = cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule); });
-      plan.l_max = degree_of(tables->plain);
-      plan.judged.push_back(tables->Mix(recipe.plain.mean(), recipe.rising.mean()));
-      for (int c = 0; c < 3; ++c) plan.channels.push_back(tables->Mix(recipe.plain[c], recipe.rising[c]));
-    }
+  Plan plan;
+  const auto raise_degree = [&](const ScalarTable& f) {
+    const int degree = forced ? cap : DegreeWithin(f, cap, options.error);
+    plan.l_max = std::max(plan.l_max, degree);
+    within = within && f.Error(degree) <= kTruncationShare * options.error;
+  };
+  if (recipe.channels) {
+    plan.channels =
+        *cache.GetPlain(key, [&] { return ScalarTable::BuildChannels(recipe.channels, cap, recipe.rule); });
+    plan.judged = plan.channels;
+    for (const ScalarTable& channel : plan.channels) raise_degree(channel);
+  } else {
+    const auto tables = cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule); });
+    // Degree and kind follow from f alone, so that colours share tables. Knots, and the error stated, are the
+    // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing
+    // angles.
+    raise_degree(tables->plain);
+    plan.judged.push_back(tables->Mix(recipe.plain.mean(), recipe.rising.mean()));
+    for (int c = 0; c < 3; ++c) plan.channels.push_back(tables->Mix(recipe.plain[c], recipe.rising[c]));
   }
   kind_ = within || forced ? GlossKind::kLobe : GlossKind::kSharp;
   return plan;

@@ -66,13 +66,13 @@ class TableCache {
  public:
   std::shared_ptr<const SchlickTables> Get(const std::string& key,
                                            const std::function<SchlickTables()>& build);
-  /// The same for a reflectance without a coat's Fresnel.
-  std::shared_ptr<const ScalarTable> GetPlain(const std::string& key,
-                                              const std::function<ScalarTable()>& build);
+  /// The same for what has no coat's Fresnel: one table, or one a channel.
+  std::shared_ptr<const std::vector<ScalarTable>> GetPlain(
+      const std::string& key, const std::function<std::vector<ScalarTable>()>& build);
 
  private:
   std::map<std::string, std::shared_ptr<const SchlickTables>> tables_;
-  std::map<std::string, std::shared_ptr<const ScalarTable>> plain_tables_;
+  std::map<std::string, std::shared_ptr<const std::vector<ScalarTable>>> plain_tables_;
 };
 
 /// Everything transport needs to know of a material's reflection and transmission.
@@ -119,9 +119,8 @@ class MaterialLobes {
     void Fill(PartLobes& part, const IncidenceSpline& spline) const;
   };
   Plan PlanMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache);
-  Plan PlanBase(const std::vector<LobeRecipe>& recipes, int cap, TableCache& cache);
-  Plan PlanGloss(const std::vector<LobeRecipe>& recipes, int cap, const LobeOptions& options,
-                 TableCache& cache);
+  Plan PlanBase(const LobeRecipe& recipe, int cap, TableCache& cache);
+  Plan PlanGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options, TableCache& cache);
 
   GlossKind kind_ = GlossKind::kNone;
   Reflectance reflectance_;

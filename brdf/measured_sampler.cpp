@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "brdf/half_angles.h"
+#include <tbb/parallel_for.h>
+
 #include "brdf/lobe_table.h"
 
 namespace lobe {
@@ -52,7 +53,7 @@ MeasuredSampler::MeasuredSampler(std::shared_ptr<const MeasuredBrdf> data) : dat
   sector_sum_.resize(size_t(kAngles) * kPolar * kAzimuth);
   density_.resize(sector_sum_.size());
   constexpr int kSide = 3;  // points a cell and direction
-  for (int angle = 0; angle < kAngles; ++angle) {
+  tbb::parallel_for(0, kAngles, [&](int angle) {
     const double cos_o = IncidenceSpline::CosineOfParameter((angle + 0.5) / kAngles);
     const Vec3d wo(std::sqrt(1 - cos_o * cos_o), 0, cos_o);
     std::vector<double> rings(kPolar), sectors(kAzimuth), cells(size_t(kPolar) * kAzimuth);
@@ -91,7 +92,7 @@ MeasuredSampler::MeasuredSampler(std::shared_ptr<const MeasuredBrdf> data) : dat
       density_[size_t(angle) * cells.size() + i] =
           float(total > 0 ? cells[i] / total : 1.0 / (kPolar * area));
     }
-  }
+  });
 }
 
 Vec3 MeasuredSampler::Sample(const Vec3& wo, float u1, float u2, float u3) const {
