@@ -84,6 +84,8 @@ class MaterialLobes {
   /// Base and gloss are Lambertian or black: nodes hold one coefficient and never meet a lobe routine.
   bool diffuse() const { return diffuse_; }
   const IncidenceSpline& spline() const { return *spline_; }  ///< common to both parts; not for diffuse()
+  /// Of one lobe, base and gloss. A node keeps what it sends in all, and while solving what is unshot.
+  size_t lobe_bytes() const { return 3 * sizeof(float) * size_t(base.count() + gloss.count()); }
   int max_degree() const { return std::max(base.l_max, gloss.l_max); }
 
   /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it, nor what
