@@ -4,6 +4,7 @@
 
 #include "bench/brdf_figures.h"
 #include "brdf/lobe_accuracy.h"
+#include "sh/hemisphere_basis.h"
 #include "sh/zernike.h"
 
 namespace lobe {
