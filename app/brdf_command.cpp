@@ -228,6 +228,7 @@ BrdfPlot Plot(const BrdfStudy& s, const Reflectance& r) {
   const MaterialLobes& lobes = s.built.lobes;
   BrdfPlot plot;
   plot.title = s.name == s.model ? s.name : s.name + "  (" + s.model + ")";
+  plot.part = PartName(s);
   plot.notes = {CostLine(s), ErrorLine(s)};
   for (const double theta : kSliceAngles) plot.slices.push_back(SliceAt(r, lobes, theta));
   for (double theta = 0; theta <= 88; theta += 4) {

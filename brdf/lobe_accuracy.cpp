@@ -88,7 +88,10 @@ Eigen::VectorXd LobeAt(const MaterialLobes& lobes, BrdfPart part, double cos_the
     return 0.2126 * c.col(0).cast<double>() + 0.7152 * c.col(1).cast<double>() +
            0.0722 * c.col(2).cast<double>();
   };
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(CoefficientCount(std::max(0, lobes.max_degree())));
+  const int degree = part == BrdfPart::kBase    ? lobes.base.l_max
+                     : part == BrdfPart::kGloss ? lobes.gloss.l_max
+                                                : lobes.max_degree();
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(CoefficientCount(std::max(0, degree)));
   if (lobes.diffuse()) {
     if (part != BrdfPart::kGloss) out[0] = Luminance(lobes.DiffuseAlbedo()) * std::sqrt(2 / kPi);
     return out;

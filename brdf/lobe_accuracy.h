@@ -24,7 +24,8 @@ struct ExactLobe {
 };
 ExactLobe ProjectExactly(const Reflectance& r, BrdfPart part, double cos_theta_i, int l_max);
 
-/// Coefficients over H of the lobe that light of irradiance 1 from azimuth 0 leaves.
+/// Coefficients over H, up to the part's degree, of the lobe that light of irradiance 1 from azimuth 0
+/// leaves.
 Eigen::VectorXd LobeAt(const MaterialLobes& lobes, BrdfPart part, double cos_theta_i);
 
 /// Flux of the negative part of a lobe, a positive number.

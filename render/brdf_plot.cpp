@@ -23,6 +23,7 @@ constexpr Colour kSecond{36, 130, 110}, kThird{130, 80, 170};
 
 constexpr int kSlices = 4;
 constexpr double kLeft = 62, kPanelWidth = 216, kPitch = 268, kPanelHeight = 178;
+constexpr double kLeastShown = 1e-5;  ///< on logarithmic axes
 constexpr double kTopRow = 132, kBottomRow = 402;
 
 std::string Degrees(double value) {
@@ -81,8 +82,8 @@ void DrawOverAngle(Drawing* drawing, const BrdfPlot& plot) {
     most_albedo = std::max({most_albedo, a.albedo, a.lobe_albedo});
     most_error = std::max(most_error, a.error);
   }
-  PlotPanel left(drawing, kLeft, kBottomRow, kPanelWidth, kPanelHeight, "albedo over θi", Angles(0, 90, 30),
-                 PlotAxis::Linear(0, most_albedo));
+  PlotPanel left(drawing, kLeft, kBottomRow, kPanelWidth, kPanelHeight, plot.part + ": albedo over θi",
+                 Angles(0, 90, 30), PlotAxis::Linear(0, most_albedo));
   left.Line(albedo, kExact, 1.8);
   left.Dots(lobes, kLobe);
   const double y = kBottomRow + kPanelHeight + 31;
@@ -92,8 +93,8 @@ void DrawOverAngle(Drawing* drawing, const BrdfPlot& plot) {
 
   PlotAxis percent = PlotAxis::Linear(0, most_error);
   percent.format = Percent;
-  PlotPanel right(drawing, kLeft + kPitch, kBottomRow, kPanelWidth, kPanelHeight, "error over θi",
-                  Angles(0, 90, 30), percent);
+  PlotPanel right(drawing, kLeft + kPitch, kBottomRow, kPanelWidth, kPanelHeight,
+                  plot.part + ": error over θi", Angles(0, 90, 30), percent);
   right.Line(truncated, kSecond, 1.6, 4);
   right.Line(between, kThird, 1.6);
   right.Line(error, kLobe, 2);
@@ -104,8 +105,7 @@ void DrawOverAngle(Drawing* drawing, const BrdfPlot& plot) {
 
 /// A logarithmic axis of percent; what is smaller than its foot lies below the frame.
 PlotAxis PercentDecades(double least, double most) {
-  constexpr double kLeast = 1e-5;
-  least = std::clamp(least, kLeast, 1.0);
+  least = std::clamp(least, kLeastShown, 1.0);
   PlotAxis axis = PlotAxis::Decades(least, std::max(most, 2 * least));
   axis.format = Percent;
   return axis;
@@ -113,7 +113,7 @@ PlotAxis PercentDecades(double least, double most) {
 
 void DrawOverDegree(Drawing* drawing, const BrdfPlot& plot) {
   Points error, worst, negative, albedo;
-  double least = 1, most = 0, least_albedo = 1, most_albedo = 1e-6;
+  double least = 1, most = 0, least_albedo = 1, most_albedo = kLeastShown, most_albedo_error = 0;
   for (const auto& d : plot.degrees) {
     error.emplace_back(d.l_max, d.error);
     worst.emplace_back(d.l_max, d.worst);
@@ -123,6 +123,7 @@ void DrawOverDegree(Drawing* drawing, const BrdfPlot& plot) {
       if (v > 0) least = std::min(least, v);
       most = std::max(most, v);
     }
+    most_albedo_error = std::max(most_albedo_error, d.albedo_error);
     for (const double v : {d.negative, d.albedo_error}) {
       if (v > 0) least_albedo = std::min(least_albedo, v);
       most_albedo = std::max(most_albedo, v);
@@ -130,8 +131,8 @@ void DrawOverDegree(Drawing* drawing, const BrdfPlot& plot) {
   }
   PlotAxis degree{0, 32, false, {0, 8, 16, 24, 32}, nullptr};
   const std::string chosen = "lmax " + std::to_string(plot.l_max);
-  PlotPanel left(drawing, kLeft + 2 * kPitch, kBottomRow, kPanelWidth, kPanelHeight, "error over lmax",
-                 degree, PercentDecades(least, most));
+  PlotPanel left(drawing, kLeft + 2 * kPitch, kBottomRow, kPanelWidth, kPanelHeight,
+                 plot.part + ": error over lmax", degree, PercentDecades(least, most));
   if (plot.tolerance > 0) left.Line({{0, plot.tolerance}, {32, plot.tolerance}}, kFaint, 1.2, 3);
   left.VerticalMark(plot.l_max, kFaint, chosen);
   left.Line(worst, kSecond, 1.6, 4);
@@ -144,14 +145,15 @@ void DrawOverDegree(Drawing* drawing, const BrdfPlot& plot) {
   if (plot.tolerance > 0) Legend(drawing, x, y, kFaint, "asked", 3);
 
   PlotPanel right(drawing, kLeft + 3 * kPitch, kBottomRow, kPanelWidth, kPanelHeight,
-                  "negative part, albedo error over lmax", degree, PercentDecades(least_albedo, most_albedo));
+                  plot.part + ": negative part over lmax", degree, PercentDecades(least_albedo, most_albedo));
   right.VerticalMark(plot.l_max, kFaint, "");
   right.Line(negative, kNegative, 2);
   right.Dots(negative, kNegative);
   right.Line(albedo, kThird, 1.6);
   right.Dots(albedo, kThird, 2);
   x = Legend(drawing, kLeft + 3 * kPitch, y, kNegative, "negative flux");
-  Legend(drawing, x, y, kThird, "albedo error");
+  const bool tiny = most_albedo_error < kLeastShown;
+  Legend(drawing, x, y, kThird, tiny ? "albedo error <0.001%" : "albedo error");
 }
 
 Drawing DrawBrdf(const BrdfPlot& plot) {

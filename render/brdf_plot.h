@@ -18,6 +18,7 @@ struct BrdfPlot {
   };
   std::vector<Slice> slices;  ///< four are drawn
 
+  std::string part;  ///< "gloss" or "base": what all that follows is of
   struct AtAngle {
     double theta_i, albedo, lobe_albedo, error, truncated, between;
   };

@@ -52,9 +52,9 @@ TEST(BrdfCommandTest, ReportsTheErrorsOfGgx) {
   EXPECT_GT(r["knots"].get<int>(), 4);
   EXPECT_LT(r["knots"].get<int>(), 15);
   EXPECT_EQ(r["lobe_bytes"], 3 * 4 * 78);
-  EXPECT_NEAR(Row(r["over_l_max"], "l_max", 12)["error"]["total"].get<double>(), 0.084, 0.001);
-  EXPECT_NEAR(Row(r["over_l_max"], "l_max", 16)["error"]["total"].get<double>(), 0.050, 0.001);
-  EXPECT_GT(Row(r["over_l_max"], "l_max", 4)["negative_part"].get<double>(), 0.05);
+  EXPECT_NEAR(Row(r["over_l_max"], "l_max", 12)["error"]["total"].get<double>(), 0.084, 0.002);
+  EXPECT_NEAR(Row(r["over_l_max"], "l_max", 16)["error"]["total"].get<double>(), 0.050, 0.002);
+  EXPECT_GT(Row(r["over_l_max"], "l_max", 4)["negative_part"].get<double>(), 0.04);
   for (const json& row : r["over_theta"]) {
     EXPECT_NEAR(row["albedo"].get<double>(), row["lobe_albedo"].get<double>(), 1e-4);
     EXPECT_GT(row["albedo"].get<double>(), 0.5);

@@ -50,6 +50,17 @@ TEST(LobeAccuracyTest, WhatAMaterialSaysOfItselfIsWhatIsMeasured) {
   }
 }
 
+// The base has a degree of its own, higher than the gloss's here.
+TEST(LobeAccuracyTest, AGlossIsJudgedAtItsOwnDegree) {
+  const Plastic r(Rgb::Constant(0.5f), 1.5f, 0.4f);
+  TableCache cache;
+  const MaterialLobes lobes(r, LobeOptions{.force_l_max = 4}, cache);
+  ASSERT_GT(lobes.base.l_max, 4);
+  const LobeAccuracy a = AccuracyMeter(r, BrdfPart::kGloss).Measure(lobes);
+  EXPECT_NEAR(a.error.truncated, lobes.gloss.error.truncated, 0.02 * a.error.truncated);
+  EXPECT_LT(a.error.between, 0.0125);
+}
+
 TEST(LobeAccuracyTest, AlbedosAreThoseOfTheBrdfAtEveryDegree) {
   for (const int l_max : {0, 5, 12}) {
     EXPECT_LT(Forced(Ggx(0.3f), BrdfPart::kGloss, l_max).albedo_error, 1e-4) << l_max;

@@ -52,6 +52,7 @@ TEST(PlotPanelTest, CurvesAreCutAtTheFrame) {
 BrdfPlot Example() {
   BrdfPlot plot;
   plot.title = "a <test> & more";
+  plot.part = "gloss";
   for (const double theta : {0.0, 30.0, 60.0, 80.0}) {
     BrdfPlot::Slice slice{theta, {}, {}};
     for (int i = 0; i <= 180; ++i) {
@@ -69,8 +70,8 @@ BrdfPlot Example() {
 
 TEST(BrdfPlotTest, ShowsSlicesAnglesAndDegrees) {
   const std::string svg = BrdfSvg(Example());
-  for (const char* words :
-       {"a &lt;test&gt; &amp; more", "θi 60°", "albedo over θi", "error over lmax", "lmax 8", "negative"}) {
+  for (const char* words : {"a &lt;test&gt; &amp; more", "θi 60°", "gloss: albedo over θi",
+                            "gloss: error over lmax", "lmax 8", "negative"}) {
     EXPECT_THAT(svg, HasSubstr(words));
   }
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
