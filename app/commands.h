@@ -43,5 +43,6 @@ void AddRenderCommand(CLI::App& app, Command* command);
 void AddInfoCommand(CLI::App& app, Command* command);
 void AddInspectCommand(CLI::App& app, Command* command);
 void AddCompareCommand(CLI::App& app, Command* command);
+void AddBrdfCommand(CLI::App& app, Command* command);
 
 }  // namespace lobe

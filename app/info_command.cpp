@@ -13,16 +13,23 @@ struct InfoFlags {
   LobeFlags lobes;  ///< for scenes; a solution has its own
 };
 
+std::string CostText(const std::vector<MaterialRow>& rows) {
+  const std::string text = LobeCostText(rows);
+  return text.empty() ? text : "\n" + text;
+}
+
 ExitCode ShowScene(const InfoFlags& flags, Console& console) {
   const Scene scene = ReadGltfScene(flags.file);
   for (const std::string& warning : scene.warnings) console.Warn(warning);
-  const auto rows = MaterialRows(scene, flags.lobes.Options());
+  auto rows = MaterialRows(scene, flags.lobes.Options());
+  MeasureLobes(scene, flags.lobes.Options(), &rows);
 
   nlohmann::json json = {{"type", "scene"},
                          {"path", flags.file},
                          {"scene", SceneJson(scene)},
                          {"materials", MaterialJson(rows)}};
-  console.Result(flags.file + ": scene\n" + SceneText(scene) + "\n" + MaterialText(rows), json);
+  console.Result(flags.file + ": scene\n" + SceneText(scene) + "\n" + MaterialText(rows) + CostText(rows),
+                 json);
   return kDone;
 }
 
@@ -56,7 +63,8 @@ std::string HistoryText(const std::vector<StepRecord>& history) {
 
 ExitCode ShowSolution(const InfoFlags& flags, Console& console) {
   const Solution s = ReadSolution(flags.file);
-  const auto rows = MaterialRows(s);
+  auto rows = MaterialRows(s);
+  MeasureLobes(s.scene, s.options.lobes, &rows);
   nlohmann::json json = {{"type", "solution"},
                          {"path", flags.file},
                          {"scene", SceneJson(s.scene)},
@@ -71,8 +79,8 @@ ExitCode ShowSolution(const InfoFlags& flags, Console& console) {
                          {"checkpoint", s.stop_reason == StopReason::kUnfinished},
                          {"solve_seconds", s.solve_seconds}};
   console.Result(flags.file + ": solution\n" + SceneText(s.scene) + MeshText(s) + "\n" + MaterialText(rows) +
-                     "\nsettings\n" + SettingsText(s.options) + "\nledger\n" + LedgerText(s.ledger) +
-                     "\nconvergence\n" + HistoryText(s.history) + "  " + StopText(s) +
+                     CostText(rows) + "\nsettings\n" + SettingsText(s.options) + "\nledger\n" +
+                     LedgerText(s.ledger) + "\nconvergence\n" + HistoryText(s.history) + "  " + StopText(s) +
                      Format("; %.2f s\n", s.solve_seconds),
                  json);
   return kDone;
@@ -93,7 +101,10 @@ void AddInfoCommand(CLI::App& app, Command* command) {
   info->footer(
       "Of a scene: counts, lamps, cameras, and for each material the model read and what it costs to solve:\n"
       "none (diffuse, one coefficient), lobe (within --lobe-error), sharp (beyond it at the cap --lmax) or "
-      "mirror.\n"
+      "mirror;\n"
+      "of those that are not diffuse also what truncation and knots over the incident angle lose, the "
+      "negative\n"
+      "part, and what a lobe takes. `lobe brdf` says more of one material.\n"
       "Of a solution also the mesh, settings, energy ledger and convergence.\n"
       "\n"
       "Examples:\n"

@@ -1,8 +1,10 @@
 #include "app/report.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "app/console.h"
+#include "brdf/lobe_accuracy.h"
 #include "solver/exposure.h"
 
 namespace lobe {
@@ -61,8 +63,15 @@ std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& opt
   std::vector<MaterialRow> rows;
   for (const Material& m : scene.materials) {
     const MaterialLobes lobes(m.reflectance, options, cache);
-    rows.push_back({m.name, Describe(m.reflectance), lobes.kind(), lobes.transmits(), lobes.base.l_max,
-                    lobes.gloss.l_max, lobes.gloss.error, m.emission});
+    rows.push_back({m.name,
+                    Describe(m.reflectance),
+                    lobes.kind(),
+                    lobes.transmits(),
+                    lobes.base.l_max,
+                    lobes.gloss.l_max,
+                    lobes.gloss.error.total,
+                    {},
+                    m.emission});
   }
   return rows;
 }
@@ -71,8 +80,15 @@ std::vector<MaterialRow> MaterialRows(const Solution& solution) {
   std::vector<MaterialRow> rows;
   for (size_t i = 0; i < solution.scene.materials.size(); ++i) {
     const Material& m = solution.scene.materials[i];
-    rows.push_back({m.name, Describe(m.reflectance), solution.material_kinds[i], m.transmits(), -1, -1,
-                    solution.material_errors[i], m.emission});
+    rows.push_back({m.name,
+                    Describe(m.reflectance),
+                    solution.material_kinds[i],
+                    m.transmits(),
+                    -1,
+                    -1,
+                    solution.material_errors[i],
+                    {},
+                    m.emission});
   }
   for (size_t p = 0; p < solution.mesh.patches.size(); ++p) {
     MaterialRow& row = rows[solution.mesh.patches[p].material];
@@ -80,6 +96,20 @@ std::vector<MaterialRow> MaterialRows(const Solution& solution) {
     row.l_max_gloss = solution.total.patch_degrees(uint32_t(p)).gloss;
   }
   return rows;
+}
+
+void MeasureLobes(const Scene& scene, const LobeOptions& options, std::vector<MaterialRow>* rows) {
+  TableCache cache;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    const MaterialLobes lobes(scene.materials[i].reflectance, options, cache);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (lobes.diffuse()) continue;
+    const bool gloss = lobes.gloss.l_max >= 0;
+    (*rows)[i].cost = {gloss ? lobes.gloss.error : lobes.base.error,
+                       NegativePart(lobes, gloss ? BrdfPart::kGloss : BrdfPart::kBase),
+                       lobes.spline().knots(), lobes.lobe_bytes(), seconds.count()};
+  }
 }
 
 std::string MaterialText(const std::vector<MaterialRow>& rows) {
@@ -96,6 +126,21 @@ std::string MaterialText(const std::vector<MaterialRow>& rows) {
   return table.Text();
 }
 
+std::string LobeCostText(const std::vector<MaterialRow>& rows) {
+  Table table("lrrrrrrr");
+  table.AddRow({"lobes of", "error", "truncation", "between knots", "negative", "knots", "a lobe", "build"});
+  bool any = false;
+  for (const MaterialRow& r : rows) {
+    if (!r.cost) continue;
+    any = true;
+    table.AddRow({r.name.empty() ? "(unnamed)" : r.name, Percent(r.cost->error.total),
+                  Percent(r.cost->error.truncated), Percent(r.cost->error.between), Percent(r.cost->negative),
+                  std::to_string(r.cost->knots), Bytes(double(r.cost->lobe_bytes)),
+                  Format("%.1f ms", 1e3 * r.cost->build_seconds)});
+  }
+  return any ? table.Text() : "";
+}
+
 json MaterialJson(const std::vector<MaterialRow>& rows) {
   json list = json::array();
   for (const MaterialRow& r : rows) {
@@ -107,6 +152,15 @@ json MaterialJson(const std::vector<MaterialRow>& rows) {
                   {"emission", ToJson(r.emission)}};
     entry["l_max_base"] = r.l_max_base < 0 ? json() : json(r.l_max_base);
     entry["l_max_gloss"] = r.l_max_gloss < 0 ? json() : json(r.l_max_gloss);
+    if (r.cost) {
+      entry["lobes"] = {{"error", r.cost->error.total},
+                        {"truncated", r.cost->error.truncated},
+                        {"between_knots", r.cost->error.between},
+                        {"negative_part", r.cost->negative},
+                        {"knots", r.cost->knots},
+                        {"lobe_bytes", r.cost->lobe_bytes},
+                        {"build_seconds", r.cost->build_seconds}};
+    }
     list.push_back(std::move(entry));
   }
   return list;

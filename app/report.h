@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,15 @@ namespace lobe {
 
 /// Words and JSON for what `solve` and `info` both say.
 
+/// What a material's lobes lose, and take; of the gloss, or of the base if there is no gloss.
+struct LobeCost {
+  LobeError error;
+  double negative = 0;  ///< flux of the negative part over the flux
+  int knots = 0;
+  size_t lobe_bytes = 0;
+  double build_seconds = 0;  ///< wall time; next to nothing where a material before it has the same tables
+};
+
 /// A material and what its reflection costs.
 struct MaterialRow {
   std::string name, model;
@@ -18,13 +28,19 @@ struct MaterialRow {
   bool translucent = false;               ///< light goes through to the other side
   int l_max_base = -1, l_max_gloss = -1;  ///< -1: no such part
   double lobe_error = 0;                  ///< flux-weighted, fraction
+  /// What only MeasureLobes says.
+  std::optional<LobeCost> cost;
   Rgb emission = Rgb::Zero();
 };
 /// By building the lobes' tables.
 std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& options);
 /// From what was solved; a material without nodes has no degrees.
 std::vector<MaterialRow> MaterialRows(const Solution& solution);
+/// Adds the cost of each material that has lobes, by making them.
+void MeasureLobes(const Scene& scene, const LobeOptions& options, std::vector<MaterialRow>* rows);
 std::string MaterialText(const std::vector<MaterialRow>& rows);
+/// Costs alone; empty if no material has any.
+std::string LobeCostText(const std::vector<MaterialRow>& rows);
 nlohmann::json MaterialJson(const std::vector<MaterialRow>& rows);
 
 std::string LedgerText(const Ledger& ledger);

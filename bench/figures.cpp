@@ -12,6 +12,7 @@
 
 #include <tbb/global_control.h>
 
+#include "bench/brdf_figures.h"
 #include "bench/timing.h"
 #include "bench/topics.h"
 #include "brdf/frame.h"
@@ -414,6 +415,9 @@ void Paths() {
 }
 
 const Topics kTopics = {{"basis", Basis},
+                        {"brdf", BrdfFigures},
+                        {"lobe-error", LobeErrorFigures},
+                        {"dering", DeringFigures},
                         {"degree", Degree},
                         {"flux", Flux},
                         {"knots", Knots},

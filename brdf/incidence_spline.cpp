@@ -7,6 +7,19 @@
 #include <Eigen/LU>
 
 namespace lobe {
+namespace {
+
+// Uniform cubic B-spline: weights of the bins before, at, after and two after, `u` of an interval on.
+template <typename Real>
+void BSplineWeights(Real u, Real* weight) {
+  const Real v = 1 - u, sixth = Real(1) / 6;
+  weight[0] = v * v * v * sixth;
+  weight[1] = (3 * u * u * u - 6 * u * u + 4) * sixth;
+  weight[2] = (3 * v * v * v - 6 * v * v + 4) * sixth;
+  weight[3] = u * u * u * sixth;
+}
+
+}  // namespace
 
 IncidenceSpline::IncidenceSpline(int knots) : knots_(knots) {
   if (knots < 5) {
@@ -33,16 +46,27 @@ IncidenceSpline::IncidenceSpline(int knots) : knots_(knots) {
 IncidenceSpline::Stencil IncidenceSpline::At(float cos_theta) const {
   const float s = ParameterOfCosine(std::clamp(cos_theta, 0.0f, 1.0f)) * float(knots_ - 1);
   const int i = std::clamp(int(s), 0, knots_ - 2);
-  const float u = s - float(i), v = 1.0f - u;
   Stencil out;
   out.mirrored = i == 0;
   out.bin[0] = i == 0 ? 1 : i - 1;
   for (int k = 1; k < 4; ++k) out.bin[k] = i - 1 + k;
-  out.weight[0] = v * v * v * (1.0f / 6.0f);
-  out.weight[1] = (3.0f * u * u * u - 6.0f * u * u + 4.0f) * (1.0f / 6.0f);
-  out.weight[2] = (3.0f * v * v * v - 6.0f * v * v + 4.0f) * (1.0f / 6.0f);
-  out.weight[3] = u * u * u * (1.0f / 6.0f);
+  BSplineWeights(s - float(i), out.weight);
   return out;
+}
+
+Eigen::MatrixXd IncidenceSpline::Interpolation(const Eigen::VectorXd& t, bool odd) const {
+  Eigen::MatrixXd read = Eigen::MatrixXd::Zero(t.size(), bins());
+  for (int row = 0; row < t.size(); ++row) {
+    const double s = std::clamp(t[row], 0.0, 1.0) * (knots_ - 1);
+    const int i = std::clamp(int(s), 0, knots_ - 2);
+    double weight[4];
+    BSplineWeights(s - i, weight);
+    read(row, i == 0 ? 1 : i - 1) += i == 0 && odd ? -weight[0] : weight[0];
+    for (int k = 1; k < 4; ++k) read(row, i - 1 + k) += weight[k];
+  }
+  Eigen::MatrixXd solve = odd ? solve_odd_ : solve_even_;
+  if (odd) solve.col(0).setZero();  // as in ControlValues
+  return read * solve;
 }
 
 Eigen::MatrixXd IncidenceSpline::ControlValues(const Eigen::MatrixXd& values, bool odd) const {

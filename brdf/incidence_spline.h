@@ -46,6 +46,12 @@ class IncidenceSpline {
   /// cos_theta is clamped to [0, 1].
   Stencil At(float cos_theta) const;
 
+  /// What values at the knots are multiplied by to give the spline's at other parameters t in [0, 1]: a row
+  /// for each, a column per knot. In double, for preparing tables.
+  Eigen::MatrixXd Interpolation(const Eigen::VectorXd& t, bool odd) const;
+  /// t of the knots.
+  Eigen::VectorXd KnotParameters() const { return Eigen::VectorXd::LinSpaced(knots_, 0.0, 1.0); }
+
   /// Control values (bins rows) that interpolate `values` (knots rows), for one parity of m.
   Eigen::MatrixXd ControlValues(const Eigen::MatrixXd& values, bool odd) const;
 

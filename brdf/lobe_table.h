@@ -38,7 +38,8 @@ using RgbBrdf = std::function<Rgb(const Vec3d& wi, const Vec3d& wo)>;
 /// (docs/conventions.md#projection). Isotropy leaves only cos(m phi) terms at incident azimuth 0.
 ///
 /// Kept over Zernike polynomials, in which a lower degree is a prefix and the flux is one number, so
-/// one table at a high degree answers "what would l_max cost" for every degree at once.
+/// one table at a high degree answers "what would l_max cost" for every degree at once; and at more angles
+/// than lobes are read with, so that it answers the same for the knots (brdf/knot_choice.h).
 struct ScalarTable {
   int l_max = 0;
   int knots = 0;
@@ -57,9 +58,8 @@ struct ScalarTable {
   /// ||f - f^|| / ||f|| (cos-weighted over wo), averaged with weight albedo cos sin.
   double Error(int l) const;
 
-  /// The same for a sum of this table and others: error of cutting this one at `l`, relative to `whole`
-  /// (equal knots), of which it is part.
-  double ErrorWithin(const ScalarTable& whole, int l) const;
+  /// Weight of knot j in averages over theta_i: albedo cos sin d theta.
+  double FluxWeight(int j) const;
 
   /// The table of `factor` f.
   ScalarTable Scaled(double factor) const;
@@ -69,8 +69,9 @@ struct ScalarTable {
   /// One table a channel; f is asked once for all.
   static std::vector<ScalarTable> BuildChannels(const RgbBrdf& f, int l_max, const HalfVectorRule& rule,
                                                 int knots = 0);
-  /// Enough for the spline's error to stay under 1e-3 of the flux (docs/validation.md#knots).
-  static int DefaultKnots(int l_max) { return 16 + l_max; }
+  /// A third more than lobes of that degree need for an error of 1 % between knots, however sharp what they
+  /// stand for (docs/validation.md#knots).
+  static int DefaultKnots(int l_max) { return 9 + l_max; }
 };
 
 /// What Schlick's Fresnel term a + b (1 - V.H)^5 makes of a reflectance f: both parts, over the same points.

@@ -15,10 +15,15 @@ namespace {
 constexpr int kBaseDegreeCap = 8;
 constexpr double kBaseError = 0.01;
 
-// A table depends on its recipe, its degree and the spline's knots.
-std::string TableKey(const std::string& recipe, int l_max, const IncidenceSpline& spline) {
-  return recipe + " to " + std::to_string(l_max) + " at " + std::to_string(spline.knots());
-}
+// What is lost between knots may be this share of what may be lost in all. Squares add up, so that a tenth
+// raises an error by half a percent of it (docs/validation.md#knots).
+constexpr double kKnotShare = 0.1;
+const double kTruncationShare = std::sqrt(1 - kKnotShare * kKnotShare);
+// Lobes that lose less than this by truncation need no knots to match.
+constexpr double kLeastError = 0.002;
+constexpr int kFewestKnots = 5;  // that a spline has
+
+std::string TableKey(const std::string& recipe, int l_max) { return recipe + " to " + std::to_string(l_max); }
 
 // What the spline's flux lacks of the albedo, at each sample of the fine grid.
 std::vector<float> FluxRest(const IncidenceSpline& spline, const Eigen::VectorXd& flux_at_knots,
@@ -38,23 +43,26 @@ std::vector<float> FluxRest(const IncidenceSpline& spline, const Eigen::VectorXd
 void SetChannel(PartLobes& part, int channel, const IncidenceSpline& spline, const ScalarTable& table) {
   const int l_max = part.l_max;
   const ZernikeTransform transform(l_max);
+  const KnotChoice knots(table.knots);
+  const Eigen::MatrixXd to_knots[2] = {knots.ToKnots(spline, false), knots.ToKnots(spline, true)};
   auto& control = part.control[channel];
   control.assign(size_t(spline.bins()) * part.RowCount(), 0.0f);
   for (int m = 0; m <= l_max; ++m) {
     const int size = (l_max - m) / 2 + 1;
-    Eigen::MatrixXd values(spline.knots(), size);
+    Eigen::MatrixXd values(table.knots, size);
     for (int n = 0; n < size; ++n) {
       values.col(n) = table.zernike.row(ScalarTable::RowIndex(m + 2 * n, m)).transpose();
     }
+    const Eigen::MatrixXd at_knots = to_knots[m % 2] * values;
     const Eigen::MatrixXd bins =
-        spline.ControlValues(values * transform.ToHemisphereBlock(m).transpose(), m % 2 == 1);
+        spline.ControlValues(at_knots * transform.ToHemisphereBlock(m).transpose(), m % 2 == 1);
     for (int l = 0; l < size; ++l) {
       for (int bin = 0; bin < spline.bins(); ++bin) {
         control[size_t(bin) * part.RowCount() + part.Row(m + 2 * l, m)] = float(bins(bin, l));
       }
     }
   }
-  const Eigen::VectorXd flux = std::sqrt(std::numbers::pi) * table.zernike.row(0).transpose();
+  const Eigen::VectorXd flux = std::sqrt(std::numbers::pi) * to_knots[0] * table.zernike.row(0).transpose();
   part.flux_rest[channel] = FluxRest(spline, flux, table.albedo);
   part.albedo[channel].resize(table.albedo.size());
   for (int i = 0; i < table.albedo.size(); ++i) part.albedo[channel][i] = float(table.albedo[i]);
@@ -62,7 +70,7 @@ void SetChannel(PartLobes& part, int channel, const IncidenceSpline& spline, con
 
 Rgb LambertPart(PartLobes& part, const Rgb& albedo) {
   part.l_max = 0;
-  part.error = 0;
+  part.error = {};
   for (int c = 0; c < 3; ++c) {
     part.control[c].clear();
     part.albedo[c].assign(ScalarTable::kFine + 1, albedo[c]);
@@ -81,10 +89,10 @@ void SplineOfLambert(PartLobes& part, const IncidenceSpline& spline) {
   }
 }
 
-int DegreeWithin(const ScalarTable& table, const LobeOptions& options) {
-  if (options.force_l_max >= 0) return options.force_l_max;
+// The smallest degree that leaves room for the knots' share; `most` if none does.
+int DegreeWithin(const ScalarTable& table, int most, double tolerance) {
   int l = 0;
-  while (l < options.l_max && table.Error(l) > options.error) ++l;
+  while (l < most && table.Error(l) > kTruncationShare * tolerance) ++l;
   return l;
 }
 
@@ -131,27 +139,59 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   glass_ = IsGlass(reflectance);
   const int cap = options.force_l_max >= 0 ? options.force_l_max : options.l_max;
   const int base_cap = std::min(kBaseDegreeCap, options.force_l_max >= 0 ? kBaseDegreeCap : cap);
-  const int knots = ScalarTable::DefaultKnots(std::max(cap, kBaseDegreeCap));
-  spline_ = std::make_shared<IncidenceSpline>(knots);
 
+  Plan base_plan;
   if (const auto* lambert = std::get_if<Lambert>(&reflectance)) {
     diffuse_albedo_ = LambertPart(base, lambert->albedo);
   } else if (const auto* gltf = std::get_if<MetallicRoughness>(&reflectance)) {
-    SetMetallicRoughnessBase(*gltf, base_cap, cache);
+    base_plan = PlanMetallicRoughnessBase(*gltf, base_cap, cache);
   } else if (const auto* oren = std::get_if<OrenNayar>(&reflectance); oren && oren->sigma == 0) {
     diffuse_albedo_ = LambertPart(base, oren->albedo);
   }
-  if (const auto recipe = BaseRecipe(reflectance)) SetBase(*recipe, base_cap, cache);
-  if (const auto recipe = GlossRecipe(reflectance)) SetGloss(*recipe, cap, options, cache);
+  if (const auto recipe = BaseRecipe(reflectance)) base_plan = PlanBase(*recipe, base_cap, cache);
+  Plan gloss_plan;
+  if (const auto recipe = GlossRecipe(reflectance)) gloss_plan = PlanGloss(*recipe, cap, options, cache);
+  base_plan.ChooseKnots(kBaseError);
+  gloss_plan.ChooseKnots(options.error);
+  spline_ = std::make_shared<IncidenceSpline>(std::max({kFewestKnots, base_plan.knots, gloss_plan.knots}));
+  base_plan.Fill(base, *spline_);
+  gloss_plan.Fill(gloss, *spline_);
+
   const bool lambertian_base = base.l_max < 0 || base.control[0].empty();
   diffuse_ = gloss.l_max < 0 && lambertian_base;
   if (!diffuse_ && lambertian_base) SplineOfLambert(base, *spline_);
 }
 
+void MaterialLobes::Plan::ChooseKnots(double tolerance) {
+  for (const ScalarTable& table : judged) {
+    const KnotChoice choice(table.knots);
+    const double truncated = table.Error(l_max);
+    int enough =
+        choice.Fewest(table, l_max, kKnotShare * std::min(tolerance, std::max(truncated, kLeastError)));
+    // Where truncation and knots err at different angles their averages add up to a little more.
+    if (truncated <= kTruncationShare * tolerance) {
+      while (enough < choice.MostMeasured() && choice.Measure(table, l_max, enough).total > tolerance)
+        ++enough;
+    }
+    knots = std::max(knots, enough);
+  }
+}
+
+void MaterialLobes::Plan::Fill(PartLobes& part, const IncidenceSpline& spline) const {
+  if (l_max < 0) return;
+  part.l_max = l_max;
+  for (const ScalarTable& table : judged) {
+    const LobeError error = KnotChoice(table.knots).Measure(table, l_max, spline.knots());
+    if (error.total >= part.error.total) part.error = error;
+  }
+  for (int c = 0; c < 3; ++c) SetChannel(part, c, spline, channels[c]);
+}
+
 // The base of glTF: c_diff / pi (1 - F), F = f0 + (f90 - f0)(1 - V.H)^5 (of the largest channel with
 // KHR_materials_specular). A constant and one universal table. What passes to the other side is weighed by
 // the same coat, so its albedo comes from the same table.
-void MaterialLobes::SetMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache) {
+MaterialLobes::Plan MaterialLobes::PlanMetallicRoughnessBase(const MetallicRoughness& gltf, int cap,
+                                                             TableCache& cache) {
   const Rgb f0 = gltf.F0();
   const float f90 = gltf.F90();
   const bool coated = (f0 > 0).any() || f90 > 0;
@@ -166,9 +206,9 @@ void MaterialLobes::SetMetallicRoughnessBase(const MetallicRoughness& gltf, int 
   const bool sloped = (slope.abs() >= 1e-7f).any();
   std::shared_ptr<const SchlickTables> white;
   if (sloped || sloped_transmission) {
-    white = cache.Get(TableKey("lambert", kBaseDegreeCap, *spline_), [&] {
+    white = cache.Get(TableKey("lambert", kBaseDegreeCap), [&] {
       return SchlickTables::Build([](const Vec3d&, const Vec3d&) { return 1.0 / std::numbers::pi; },
-                                  kBaseDegreeCap, HalfVectorRule{.width = 1.0}, spline_->knots());
+                                  kBaseDegreeCap, HalfVectorRule{.width = 1.0});
     });
   }
   if (sloped_transmission) {
@@ -176,60 +216,60 @@ void MaterialLobes::SetMetallicRoughnessBase(const MetallicRoughness& gltf, int 
   }
   if (!sloped) {
     if ((diffuse > 0).any() || !coated || transmits_) diffuse_albedo_ = LambertPart(base, constant);
-    return;
+    return {};
   }
-  // Only the Fresnel part is cut; the steepest channel decides.
+  // The steepest channel decides.
   int steepest = 0;
   (slope / constant.max(1e-6f)).maxCoeff(&steepest);
-  const auto whole = white->Mix(constant[steepest], -slope[steepest]);
-  const auto error = [&](int l) { return slope[steepest] * white->rising.ErrorWithin(whole, l); };
-  base.l_max = 0;
-  while (base.l_max < cap && error(base.l_max) > kBaseError) ++base.l_max;
-  base.error = error(base.l_max);
-  for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, white->Mix(constant[c], -slope[c]));
+  Plan plan;
+  for (int c = 0; c < 3; ++c) plan.channels.push_back(white->Mix(constant[c], -slope[c]));
+  plan.judged.push_back(plan.channels[steepest]);
+  plan.l_max = DegreeWithin(plan.judged[0], cap, kBaseError);
+  return plan;
 }
 
-void MaterialLobes::SetBase(const LobeRecipe& recipe, int cap, TableCache& cache) {
-  const auto tables = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap, *spline_), [&] {
-    ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule, spline_->knots());
+MaterialLobes::Plan MaterialLobes::PlanBase(const LobeRecipe& recipe, int cap, TableCache& cache) {
+  const auto tables = cache.GetPlain(TableKey(recipe.key, kBaseDegreeCap), [&] {
+    ScalarTable built = ScalarTable::Build(recipe.f, kBaseDegreeCap, recipe.rule);
     for (int i = 0; recipe.albedo && i <= ScalarTable::kFine; ++i) {
       built.albedo[i] = recipe.albedo(IncidenceSpline::CosineOfParameter(double(i) / ScalarTable::kFine));
     }
     return std::vector<ScalarTable>{std::move(built)};
   });
-  const ScalarTable& table = tables->front();
-  base.l_max = 0;
-  while (base.l_max < cap && table.Error(base.l_max) > kBaseError) ++base.l_max;
-  base.error = table.Error(base.l_max);
-  for (int c = 0; c < 3; ++c) SetChannel(base, c, *spline_, table.Scaled(recipe.plain[c]));
+  Plan plan;
+  plan.judged = *tables;
+  plan.l_max = DegreeWithin(plan.judged[0], cap, kBaseError);
+  for (int c = 0; c < 3; ++c) plan.channels.push_back(plan.judged[0].Scaled(recipe.plain[c]));
+  return plan;
 }
 
-void MaterialLobes::SetGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options,
-                             TableCache& cache) {
-  const std::string key = TableKey(recipe.key, cap, *spline_);
+MaterialLobes::Plan MaterialLobes::PlanGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options,
+                                             TableCache& cache) {
+  const std::string key = TableKey(recipe.key, cap);
+  const bool forced = options.force_l_max >= 0;
   bool within = true;
+  Plan plan;
+  const auto raise_degree = [&](const ScalarTable& f) {
+    const int degree = forced ? cap : DegreeWithin(f, cap, options.error);
+    plan.l_max = std::max(plan.l_max, degree);
+    within = within && f.Error(degree) <= kTruncationShare * options.error;
+  };
   if (recipe.channels) {
-    const auto tables = cache.GetPlain(
-        key, [&] { return ScalarTable::BuildChannels(recipe.channels, cap, recipe.rule, spline_->knots()); });
-    for (const ScalarTable& table : *tables)
-      gloss.l_max = std::max(gloss.l_max, DegreeWithin(table, options));
-    for (int c = 0; c < 3; ++c) {
-      gloss.error = std::max(gloss.error, (*tables)[c].Error(gloss.l_max));
-      SetChannel(gloss, c, *spline_, (*tables)[c]);
-    }
-    within = gloss.error <= options.error;
+    plan.channels =
+        *cache.GetPlain(key, [&] { return ScalarTable::BuildChannels(recipe.channels, cap, recipe.rule); });
+    plan.judged = plan.channels;
+    for (const ScalarTable& channel : plan.channels) raise_degree(channel);
   } else {
-    const auto tables =
-        cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule, spline_->knots()); });
-    // Degree and kind follow from f alone, so that colours share tables. The error stated is the material's
-    // own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing angles.
-    gloss.l_max = DegreeWithin(tables->plain, options);
-    gloss.error = tables->Mix(recipe.plain.mean(), recipe.rising.mean()).Error(gloss.l_max);
-    for (int c = 0; c < 3; ++c)
-      SetChannel(gloss, c, *spline_, tables->Mix(recipe.plain[c], recipe.rising[c]));
-    within = tables->plain.Error(gloss.l_max) <= options.error;
+    const auto tables = cache.Get(key, [&] { return SchlickTables::Build(recipe.f, cap, recipe.rule); });
+    // Degree and kind follow from f alone, so that colours share tables. Knots, and the error stated, are the
+    // material's own: a dielectric's is larger, since Schlick's rise leaves most of its gloss at grazing
+    // angles.
+    raise_degree(tables->plain);
+    plan.judged.push_back(tables->Mix(recipe.plain.mean(), recipe.rising.mean()));
+    for (int c = 0; c < 3; ++c) plan.channels.push_back(tables->Mix(recipe.plain[c], recipe.rising[c]));
   }
-  kind_ = within || options.force_l_max >= 0 ? GlossKind::kLobe : GlossKind::kSharp;
+  kind_ = within || forced ? GlossKind::kLobe : GlossKind::kSharp;
+  return plan;
 }
 
 Rgb MaterialLobes::Albedo(float cos_theta_i) const {

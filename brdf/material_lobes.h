@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "brdf/incidence_spline.h"
+#include "brdf/knot_choice.h"
 #include "brdf/lobe_recipe.h"
 #include "brdf/lobe_table.h"
 #include "brdf/reflectance.h"
@@ -29,7 +30,8 @@ struct LobeOptions {
   /// (l_max+1)(l_max+2)/2. Default measured in docs/validation.md#degree.
   int l_max = 20;
   /// Flux-weighted error (0.1 = 10 %) a lobe may have; the smallest degree within it is taken (for GGX with F
-  /// = 1). Default measured in docs/validation.md#degree.
+  /// = 1), and the fewest knots over theta_i that add little to it. Default measured in
+  /// docs/validation.md#degree.
   double error = 0.10;
   /// Gives every gloss part exactly this degree; -1: choose by error.
   int force_l_max = -1;
@@ -38,10 +40,10 @@ struct LobeOptions {
 /// One part (base or gloss) of a material as lobes, three channels.
 struct PartLobes {
   int l_max = -1;  ///< -1: the part is black
-  /// Flux-weighted error of the degree taken (docs/conventions.md#basis), 0 when exact. Under a coat the
-  /// degree is chosen on F = 1, by roughness alone; this is the error with the material's own Fresnel, larger
-  /// for dielectrics. Of measured channels, which have tables of their own, the largest.
-  double error = 0;
+  /// Of the degree and knots taken, 0 when exact. Under a coat the degree is chosen on F = 1, by roughness
+  /// alone; this is the error with the material's own Fresnel, larger for dielectrics. Of measured channels,
+  /// which have tables of their own, the largest.
+  LobeError error;
   /// Control values over the incidence spline, control[c][bin * RowCount() + Row(l, m)], m >= 0: the H_lm
   /// coefficients of the light leaving for irradiance 1 at incident azimuth 0.
   std::array<std::vector<float>, 3> control;
@@ -82,6 +84,8 @@ class MaterialLobes {
   /// Base and gloss are Lambertian or black: nodes hold one coefficient and never meet a lobe routine.
   bool diffuse() const { return diffuse_; }
   const IncidenceSpline& spline() const { return *spline_; }  ///< common to both parts; not for diffuse()
+  /// Of one lobe, base and gloss. A node keeps what it sends in all, and while solving what is unshot.
+  size_t lobe_bytes() const { return 3 * sizeof(float) * size_t(base.count() + gloss.count()); }
   int max_degree() const { return std::max(base.l_max, gloss.l_max); }
 
   /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it, nor what
@@ -105,9 +109,20 @@ class MaterialLobes {
   PartLobes base, gloss;
 
  private:
-  void SetMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache);
-  void SetBase(const LobeRecipe& recipe, int cap, TableCache& cache);
-  void SetGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options, TableCache& cache);
+  /// A part before its knots are known: tables of the three channels, and knots that suffice for it.
+  struct Plan {
+    int l_max = -1;
+    std::vector<ScalarTable> channels;
+    /// Those, or mixtures of them, that decide about errors.
+    std::vector<ScalarTable> judged;
+    int knots = 0;
+
+    void ChooseKnots(double tolerance);
+    void Fill(PartLobes& part, const IncidenceSpline& spline) const;
+  };
+  Plan PlanMetallicRoughnessBase(const MetallicRoughness& gltf, int cap, TableCache& cache);
+  Plan PlanBase(const LobeRecipe& recipe, int cap, TableCache& cache);
+  Plan PlanGloss(const LobeRecipe& recipe, int cap, const LobeOptions& options, TableCache& cache);
 
   GlossKind kind_ = GlossKind::kNone;
   Reflectance reflectance_;

@@ -208,7 +208,7 @@ class ProgressiveSolver {
       StopIfTold();
       materials_.emplace_back(material.reflectance, s_.options.lobes, cache);
       kinds.push_back(materials_.back().kind());
-      errors.push_back(materials_.back().gloss.error);
+      errors.push_back(materials_.back().gloss.error.total);
     }
     s_.material_kinds = std::move(kinds);
     s_.material_errors = std::move(errors);

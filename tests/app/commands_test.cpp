@@ -116,7 +116,9 @@ TEST_F(CommandsTest, InfoNamesTranslucentMaterials) {
 TEST_F(CommandsTest, InfoOfASolutionRepeatsWhatSolveSaid) {
   const json solved = RunForJson({"solve", ScenePath("cornell_glossy"), "-o", File("out.glb"), "--edge", "2",
                                   "--lmax", "6", "--light-samples", "4", "--delta-areas", "16"});
-  const json info = RunForJson({"info", File("out.glb")});
+  json info = RunForJson({"info", File("out.glb")});
+  // What lobes lose and take, info alone says.
+  for (json& material : info["materials"]) material.erase("lobes");
   EXPECT_EQ(info["type"], "solution");
   EXPECT_EQ(info["mesh"]["nodes"], solved["nodes"]);
   EXPECT_EQ(info["materials"], solved["materials"]);

@@ -404,7 +404,7 @@ TEST(MeasuredBrdfTest, LobesOfFineDataAreThoseOfItsModel) {
         << cosine << ": " << data.Albedo(cosine).transpose() << " against "
         << exact.Albedo(cosine).transpose();
   }
-  EXPECT_NEAR(data.gloss.error, exact.gloss.error, 0.05 * exact.gloss.error);
+  EXPECT_NEAR(data.gloss.error.total, exact.gloss.error.total, 0.05 * exact.gloss.error.total);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct GlossFurnace {
     const Solution s = Solve(b.Build(), o);
     TableCache cache;
     const MaterialLobes material(reflectance, o.lobes, cache);
-    stated = std::max(material.gloss.error, material.base.error);
+    stated = std::max(material.gloss.error.total, material.base.error.total);
     std::vector<float> basis(kMaxBasisSize);
     for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {
       if (s.mesh.patches[s.mesh.node_patch[n]].material != block) continue;
