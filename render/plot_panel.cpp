@@ -35,8 +35,9 @@ double PlotAxis::Place(double value) const {
 
 PlotAxis PlotAxis::Linear(double least, double most) {
   PlotAxis axis;
+  if (!(most > 0) && !(least < 0)) most = 1;
   const double range = most - std::min(least, 0.0);
-  const double step = RoundStep(range > 0 ? range : 1, 5);
+  const double step = RoundStep(range, 5);
   axis.low = least < 0 ? least - 0.02 * range : 0;
   axis.high = std::max(std::ceil(most / step - 1e-9), 1.0) * step;
   for (int i = int(std::ceil(axis.low / step)); i * step <= axis.high + 0.5 * step; ++i) {
