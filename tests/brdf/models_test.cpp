@@ -57,7 +57,7 @@ TEST_P(EveryModelTest, AlbedoOfItsLobesNeverExceedsWhatItPromises) {
     most = std::max(most, albedo.maxCoeff());
   }
   const auto part = [&](const std::string& name, const PartLobes& lobe) {
-    RecordProperty(name, std::to_string(lobe.l_max) + ", " + std::to_string(100 * lobe.error) + " %");
+    RecordProperty(name, std::to_string(lobe.l_max) + ", " + std::to_string(100 * lobe.error.total) + " %");
   };
   part("base", lobes.base);
   part("gloss", lobes.gloss);
