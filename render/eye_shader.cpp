@@ -40,9 +40,7 @@ struct EyeShader::Task {
 
 EyeShader::EyeShader(const Solution& solution)
     : solution_(solution), paths_(solution.scene), stored_(solution) {
-  for (const Material& m : solution.scene.materials) {
-    gloss_.push_back(ReflectanceSampler(m.reflectance).Gloss());
-  }
+  for (uint32_t m = 0; m < solution.scene.materials.size(); ++m) gloss_.push_back(paths_.sampler(m).Gloss());
 }
 
 EyeShader::Reading EyeShader::ReadingOf(uint32_t material, const RenderOptions& options) const {

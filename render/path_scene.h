@@ -59,6 +59,7 @@ class PathScene {
   const RayTracer& tracer() const { return tracer_; }
   const SpecularSurfaces& specular() const { return specular_; }
   const Surface& surface(uint32_t face) const { return surfaces_[faces_[face].material]; }
+  const ReflectanceSampler& sampler(uint32_t material) const { return surfaces_[material].sampler; }
   uint32_t material(uint32_t face) const { return faces_[face].material; }
   bool has_lamps() const { return !lamps_.empty(); }
   /// Does this hit see emission?

@@ -15,9 +15,9 @@ namespace lobe {
 nlohmann::json JsonNumber(float value);
 
 /// Standard glTF with KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume and
-/// _diffuse_transmission where needed. Models that glTF lacks go into LOBE_materials_brdf beside the nearest that
-/// other programs can show. `writer`: the file that is to hold measured data; without one only its digest is
-/// told, good for comparing.
+/// _diffuse_transmission where needed. Models that glTF lacks go into LOBE_materials_brdf beside the nearest
+/// that other programs can show. `writer`: the file that is to hold measured data; without one only its
+/// digest is told, good for comparing.
 nlohmann::json GltfMaterial(const Material& material, GlbWriter* writer = nullptr);
 
 /// An entry of the document's `cameras`. `near_plane` in metres: glTF wants one, Lobe has none.

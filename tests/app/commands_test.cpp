@@ -141,7 +141,8 @@ TEST_F(CommandsTest, RenderTracesPathsOfAScene) {
 }
 
 TEST_F(CommandsTest, RenderWritesLayersThatSumToTheColour) {
-  RunForJson({"render", Solved("cornell_diffuse"), "-o", File("l.exr"), "--size", "24x24", "--layers", "all"});
+  RunForJson(
+      {"render", Solved("cornell_diffuse"), "-o", File("l.exr"), "--size", "24x24", "--layers", "all"});
   const Image colour = ReadExr(File("l.exr"));
   Image sum(colour.width, colour.height);
   for (const char* name : {"direct", "indirect", "specular"}) {
