@@ -11,11 +11,6 @@
 namespace lobe {
 namespace {
 
-// Sixteen numbers wherever they lie.
-typedef float LooseLanes __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
-LOBE_INLINE const LooseLanes& Loose(const float* from) { return *reinterpret_cast<const LooseLanes*>(from); }
-LOBE_INLINE LooseLanes& Loose(float* at) { return *reinterpret_cast<LooseLanes*>(at); }
-
 // Adds a spectrum, times a weight, to each of `count` bins. `size` is a multiple of kLanes.
 LOBE_SIMD_CLONES void AddToBins(float* moments, size_t size, const float* spectrum, const int* bin,
                                 const float* weight, int count) {
@@ -32,24 +27,13 @@ LOBE_SIMD_CLONES void AddToBins(float* moments, size_t size, const float* spectr
 // orders side by side, as in LobeReader. `azimuth` is scratch for whole blocks of orders, twice.
 LOBE_SIMD_CLONES void OneDirection(float x, float y, int l_max, const float* scale, float* azimuth,
                                    float* out) {
-  const float x2 = x * x - y * y, y2 = 2 * x * y, x3 = x2 * x - y2 * y, y3 = x2 * y + y2 * x;
-  const float x4 = x2 * x2 - y2 * y2, y4 = 2 * x2 * y2, x8 = x4 * x4 - y4 * y4, y8 = 2 * x4 * y4;
-  const float x12 = x8 * x4 - y8 * y4, y12 = x8 * y4 + y8 * x4;
-  const FloatLanes small_re = {1, x, x2, x3, 1, x, x2, x3, 1, x, x2, x3, 1, x, x2, x3};
-  const FloatLanes small_im = {0, y, y2, y3, 0, y, y2, y3, 0, y, y2, y3, 0, y, y2, y3};
-  const FloatLanes large_re = {1, 1, 1, 1, x4, x4, x4, x4, x8, x8, x8, x8, x12, x12, x12, x12};
-  const FloatLanes large_im = {0, 0, 0, 0, y4, y4, y4, y4, y8, y8, y8, y8, y12, y12, y12, y12};
-  FloatLanes cosine = small_re * large_re - small_im * large_im;
-  FloatLanes sine = small_re * large_im + small_im * large_re;
-  const float x16 = x8 * x8 - y8 * y8, y16 = 2 * x8 * y8;
+  AzimuthLanes powers(x, y);
   const int blocks = l_max / kLanes + 1;
   float* sines = azimuth + blocks * kLanes;
   for (int block = 0; block < blocks; ++block) {
-    Loose(azimuth + block * kLanes) = cosine;
-    Loose(sines + block * kLanes) = sine;
-    const FloatLanes turned = cosine * x16 - sine * y16;
-    sine = cosine * y16 + sine * x16;
-    cosine = turned;
+    Loose(azimuth + block * kLanes) = powers.cosine;
+    Loose(sines + block * kLanes) = powers.sine;
+    powers.Advance();
   }
   // What is written past the last order is written over by what follows.
   for (int c = 0; c < 3; ++c) {
