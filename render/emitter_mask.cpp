@@ -29,22 +29,16 @@ Mask EmitterMask(const Scene& scene, const RayTracer& tracer, const CameraView& 
   const PixelRect seen = wider.crop;
   std::vector<uint8_t> emitter(size_t(seen.width()) * seen.height(), 0);  // bits would be shared by threads
 
-  struct Scratch {
-    std::vector<Ray> rays;
-    std::vector<RayHit> hits;
-  };
-  tbb::enumerable_thread_specific<Scratch> scratches;
+  tbb::enumerable_thread_specific<PixelRays> scratches;
   ForEachTile(wider, kSmallTile,
               [&](const Tile& tile) {
-                Scratch& scratch = scratches.local();
-                for (int y = std::max(tile.y0, seen.y0); y < std::min(tile.y1, seen.y1); ++y) {
-                  for (int x = std::max(tile.x0, seen.x0); x < std::min(tile.x1, seen.x1); ++x) {
-                    scratch.rays.clear();
-                    eye_rays.Append(x, y, &scratch.rays);
-                    scratch.hits.resize(scratch.rays.size());
-                    tracer.Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+                PixelRays& pixel = scratches.local();
+                const PixelRect part = Intersection(tile.rect(), seen);
+                for (int y = part.y0; y < part.y1; ++y) {
+                  for (int x = part.x0; x < part.x1; ++x) {
+                    pixel.Trace(eye_rays, tracer, x, y);
                     emitter[size_t(y - seen.y0) * seen.width() + (x - seen.x0)] =
-                        std::any_of(scratch.hits.begin(), scratch.hits.end(),
+                        std::any_of(pixel.hits.begin(), pixel.hits.end(),
                                     [&](const RayHit& hit) { return Emits(scene, hit); });
                   }
                 }

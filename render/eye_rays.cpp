@@ -161,6 +161,13 @@ void EyeRays::Append(int x, int y, std::vector<Ray>* rays) const {
   }
 }
 
+void PixelRays::Trace(const EyeRays& eye_rays, const RayTracer& tracer, int x, int y) {
+  rays.clear();
+  eye_rays.Append(x, y, &rays);
+  hits.resize(rays.size());
+  tracer.Intersect(rays, hits, /*coherent=*/true);
+}
+
 namespace {
 
 /// The window in tiles of the full picture.

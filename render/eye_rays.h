@@ -55,11 +55,19 @@ class EyeRays {
   std::vector<float> inverse_;  // of the cumulative filter, one axis; empty for the box
 };
 
+/// One pixel's eye rays and what they hit: a thread's scratch where every ray is looked at on its own.
+struct PixelRays {
+  std::vector<Ray> rays;
+  std::vector<RayHit> hits;
+  void Trace(const EyeRays& eye_rays, const RayTracer& tracer, int x, int y);
+};
+
 /// A square of pixels of the full picture whose eye rays go together, [x0, x1) x [y0, y1). With a crop the
 /// tiles are those of the full picture that meet it, whole: rays that are traced together then stay together,
 /// and so do their bits; pixels outside options.Window() are to be dropped.
 struct Tile {
   int index, x0, y0, x1, y1;  // index: 0 to TileCount - 1
+  PixelRect rect() const { return {x0, y0, x1, y1}; }
 };
 inline constexpr int kSmallTile = 8;  ///< pixels a side
 int TileCount(const RenderOptions& options, int tile_side);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -17,6 +18,10 @@ struct PixelRect {
   bool Contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
   bool operator==(const PixelRect&) const = default;
 };
+/// What two rectangles share; empty, perhaps of negative size, if nothing.
+inline PixelRect Intersection(const PixelRect& a, const PixelRect& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
 
 /// Scene-linear picture, row by row from the top left.
 struct Image {

@@ -98,7 +98,7 @@ struct PacketLight::State {
   Counts counts;
 
   State(const Solution& s, const ElementLocator& l, const std::vector<uint8_t>& h)
-      : solution(s), locator(l), handled(h), lanes(MaxDegree(s.total)) {
+      : solution(s), locator(l), handled(h), lanes(s.total.max_degree()) {
     Forget();
   }
 
@@ -107,14 +107,6 @@ struct PacketLight::State {
   void Forget() {
     last = &none;
     std::fill(above, above + kColumns, &none);
-  }
-
-  static int MaxDegree(const NodeLobes& lobes) {
-    int l_max = 0;
-    for (uint32_t p = 0; p < lobes.patch_count(); ++p) {
-      l_max = std::max(l_max, lobes.patch_degrees(p).max_degree());
-    }
-    return l_max;
   }
 
   const Place& Find(uint32_t face_side, float u, float v);

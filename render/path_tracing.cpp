@@ -16,29 +16,22 @@ Image RenderPathTraced(const PathTracer& paths, const CameraView& view, const Re
   const PixelRect window = options.Window();
   Image image(window.width(), window.height());
 
-  struct Scratch {
-    std::vector<Ray> rays;
-    std::vector<RayHit> hits;
-  };
-  tbb::enumerable_thread_specific<Scratch> scratches;
+  tbb::enumerable_thread_specific<PixelRays> scratches;
   std::vector<uint64_t> traced(TileCount(options, kSmallTile), 0);
 
   const auto render_tile = [&](const Tile& tile) {
-    Scratch& scratch = scratches.local();
+    PixelRays& pixel = scratches.local();
     uint64_t rays = 0;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        if (!window.Contains(x, y)) continue;  // a pixel's paths depend on nothing beside it
-        scratch.rays.clear();
-        eye_rays.Append(x, y, &scratch.rays);
-        scratch.hits.resize(scratch.rays.size());
-        paths.tracer().Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
-        rays += scratch.rays.size();
+    // A pixel's paths depend on nothing beside it.
+    const PixelRect part = Intersection(tile.rect(), window);
+    for (int y = part.y0; y < part.y1; ++y) {
+      for (int x = part.x0; x < part.x1; ++x) {
+        pixel.Trace(eye_rays, paths.tracer(), x, y);
+        rays += pixel.rays.size();
         RandomStream random(Mix(Mix(options.seed, 0x9a7b), uint64_t(y) * options.width + x));
         Eigen::Array3d sum = Eigen::Array3d::Zero();
         for (int s = 0; s < samples; ++s) {
-          sum +=
-              paths.RadianceFrom(scratch.hits[s], -scratch.rays[s].direction, random, &rays).cast<double>();
+          sum += paths.RadianceFrom(pixel.hits[s], -pixel.rays[s].direction, random, &rays).cast<double>();
         }
         image.at(x - window.x0, y - window.y0) = (sum / samples).cast<float>();
       }

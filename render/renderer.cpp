@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
-#include <mutex>
 #include <span>
 #include <sstream>
-#include <string>
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -52,14 +49,10 @@ struct Renderer::Impl {
   const Solution& solution;
   EyeShader shader;
 
-  std::mutex tiles_mutex;
-  std::map<std::string, std::unique_ptr<TileRenderer>> tiles;  // by what they handle, a letter a side
-
   explicit Impl(const Solution& s) : solution(s), shader(s) {}
 
   struct Scratch {
-    std::vector<Ray> rays;
-    std::vector<RayHit> hits;
+    PixelRays pixel;
     EyeShader::Work work;
   };
   struct Sums {  // of a tile
@@ -67,21 +60,15 @@ struct Renderer::Impl {
     uint64_t rays = 0, eye_rays = 0;
   };
 
-  // For pictures in this mode: what it reads from lobes alone they read, packet by packet.
-  const TileRenderer& TilesFor(const RenderOptions& options) {
-    std::vector<uint8_t> handled;
+  // Of every side of every material: is what the eye sees of it read from lobes alone in this mode?
+  std::vector<uint8_t> ReadFromLobes(const RenderOptions& options) const {
+    std::vector<uint8_t> out;
     for (uint32_t m = 0; m < solution.scene.materials.size(); ++m) {
       const bool stored = shader.paths().specular().kind(m) == SpecularSurfaces::Kind::kNone &&
                           shader.ReadingOf(m, options) == EyeShader::Reading::kStored;
-      handled.insert(handled.end(), 2, stored);
+      out.insert(out.end(), 2, stored);
     }
-    const std::lock_guard lock(tiles_mutex);
-    auto& out = tiles[std::string(handled.begin(), handled.end())];
-    if (!out) {
-      out = std::make_unique<TileRenderer>(solution, shader.paths().tracer(), shader.stored().locator(),
-                                           std::move(handled));
-    }
-    return *out;
+    return out;
   }
 
   // Every eye ray on its own, so that what it brings can be told apart.
@@ -89,25 +76,23 @@ struct Renderer::Impl {
                     const LayerSet& wanted, const Tile& tile, Scratch& scratch, LayeredImage* image,
                     Sums* sum) const {
     const int samples = eye_rays.per_pixel();
-    const PixelRect window = options.Window();
+    const PixelRect window = options.Window(), part = Intersection(tile.rect(), window);
     const bool split = wanted.Has(Layer::kDirect) || wanted.Has(Layer::kIndirect);
-    scratch.hits.resize(samples);
-    for (int y = std::max(tile.y0, window.y0); y < std::min(tile.y1, window.y1); ++y) {
-      for (int x = std::max(tile.x0, window.x0); x < std::min(tile.x1, window.x1); ++x) {
-        scratch.rays.clear();
-        eye_rays.Append(x, y, &scratch.rays);
-        shader.paths().tracer().Intersect(scratch.rays, scratch.hits, /*coherent=*/true);
+    PixelRays& pixel = scratch.pixel;
+    for (int y = part.y0; y < part.y1; ++y) {
+      for (int x = part.x0; x < part.x1; ++x) {
+        pixel.Trace(eye_rays, shader.paths().tracer(), x, y);
         EyeLight light;
         for (int s = 0; s < samples; ++s) {
-          light += shader.Shade(scratch.rays[s], scratch.hits[s], options,
-                                {PixelKey(options, x, y), uint32_t(s)}, split, scratch.work);
+          light += shader.Shade(pixel.rays[s], pixel.hits[s], options, {PixelKey(options, x, y), uint32_t(s)},
+                                split, scratch.work);
         }
         const Rgb colour = light.Sum();
         image->color.at(x - window.x0, y - window.y0) = colour / float(samples);
         sum->shown += colour.sum();
         sum->clamped += light.clamped.sum();
         sum->eye_rays += uint64_t(samples);
-        PutLayers(view, scratch.rays, scratch.hits, light, x - window.x0, y - window.y0, image);
+        PutLayers(view, pixel.rays, pixel.hits, light, x - window.x0, y - window.y0, image);
       }
     }
   }
@@ -180,7 +165,8 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
   const PixelRect window = options.Window();
   LayeredImage image(window.width(), window.height(), wanted);
 
-  const TileRenderer& tiles = impl_->TilesFor(options);
+  const TileRenderer tiles(impl_->solution, tracer(), impl_->shader.stored().locator(),
+                           impl_->ReadFromLobes(options));
   const int side = wanted.empty() ? tiles.TileSide(eye_rays, options.width, options.height) : kSmallTile;
   tbb::enumerable_thread_specific<Impl::Scratch> scratches;
   std::vector<Impl::Sums> sums(TileCount(options, side));
@@ -222,7 +208,7 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
       eye_ray_count += s.eye_rays;
     }
     report->clamped = shown > 0 ? clamped / shown : 0;
-    // Light behind the last mirror is taken to be as bright as the picture.
+    // What is behind the last mirror is taken to be as bright as the picture.
     report->cut_off = eye_ray_count > 0 ? cut / (3.0 * double(eye_ray_count)) : 0;
     report->samples_per_pixel = eye_rays.per_pixel();
     report->complete = complete;

@@ -35,18 +35,15 @@ struct TileRenderer::Impl {
   const RayTracer& tracer;
   const ElementLocator& locator;
   const std::vector<uint8_t> handled;
-  int l_max = 0;
+  const int l_max;
   tbb::enumerable_thread_specific<PacketLight> lights;
 
   Impl(const Solution& solution, const RayTracer& t, const ElementLocator& l, std::vector<uint8_t> h)
       : tracer(t),
         locator(l),
         handled(std::move(h)),
-        lights([this, &solution] { return PacketLight(solution, locator, handled); }) {
-    for (uint32_t p = 0; p < solution.total.patch_count(); ++p) {
-      l_max = std::max(l_max, solution.total.patch_degrees(p).max_degree());
-    }
-  }
+        l_max(solution.total.max_degree()),
+        lights([this, &solution] { return PacketLight(solution, locator, handled); }) {}
 };
 
 TileRenderer::TileRenderer(const Solution& solution, const RayTracer& tracer, const ElementLocator& locator,

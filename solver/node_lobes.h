@@ -49,6 +49,8 @@ class NodeLobes {
   size_t node_count() const { return node_patch_.size(); }
   size_t patch_count() const { return patch_degrees_.size(); }
   const PartDegrees& patch_degrees(uint32_t p) const { return patch_degrees_[p]; }
+  /// Of any patch; 0 without any.
+  int max_degree() const { return bases_.empty() ? 0 : int(bases_.size()) - 1; }
   size_t bytes() const { return values_.size() * sizeof(float); }
 
   void SetZero();
