@@ -29,6 +29,7 @@
 #include "tests/support/adaptive_albedo.h"
 #include "tests/support/block_z_scores.h"
 #include "tests/support/gloss_furnace.h"
+#include "tests/support/metal.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/truth.h"
 
@@ -49,13 +50,7 @@ ScalarTable GgxTable(double roughness, int l_max) {
       l_max, HalfVectorRule{.width = a});
 }
 
-MetallicRoughness Metal(float roughness) {
-  MetallicRoughness r;
-  r.base_color = Rgb::Constant(0.9f);
-  r.metallic = 1;
-  r.roughness = roughness;
-  return r;
-}
+MetallicRoughness Metal(float roughness) { return test::Metal(roughness, Rgb::Constant(0.9f)); }
 
 // --- sphere and tables -------------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@
 #include "scene/gltf_scene.h"
 #include "solver/solver.h"
 #include "tests/support/gloss_furnace.h"
+#include "tests/support/metal.h"
 #include "tests/support/scene_builder.h"
 #include "tests/support/truth.h"
 
@@ -27,13 +28,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 const std::string kTests = "tests";
 
-MetallicRoughness Metal(float roughness) {
-  MetallicRoughness r;
-  r.base_color = Rgb::Constant(0.9f);
-  r.metallic = 1;
-  r.roughness = roughness;
-  return r;
-}
+MetallicRoughness Metal(float roughness) { return test::Metal(roughness, Rgb::Constant(0.9f)); }
 
 struct NodeError {
   double mean, worst;

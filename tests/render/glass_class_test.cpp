@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/glass.h"
 #include "tests/support/path_classes.h"
 
 namespace lobe {
@@ -11,24 +10,15 @@ namespace {
 
 using namespace test;
 
-uint32_t AddPane(Stage* b, const MetallicRoughness& glass = Pane(1.5f, Rgb(0.9f, 0.8f, 0.6f))) {
-  return b->AddMaterial("pane", glass, Rgb::Zero(), /*double_sided=*/true);
-}
-
 // Coloured within, so that ways of different length count.
-MetallicRoughness Bottle() {
-  MetallicRoughness m = ClearGlass(1.5f);
-  m.attenuation_color = Rgb(0.9f, 0.7f, 0.5f);
-  m.attenuation_distance = 0.4f;
-  return m;
-}
+MetallicRoughness Bottle() { return ColouredGlass(Rgb(0.9f, 0.7f, 0.5f), 0.4f); }
 
 TEST(GlassClassTest, LPDE_LampsBehindPanesAreShot) {
   for (const float half : {0.05f, 0.8f}) {
     Stage b;
     b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
     b.Down(-half, half, -half, half, 1, b.lamp);
-    const uint32_t pane = AddPane(&b);
+    const uint32_t pane = b.AddPane();
     b.Up(-3, 3, -3, 3, 0.5f, pane);
     b.Down(-3, 3, -3, 3, 0.7f, pane);  // facing either way
     ExpectReceiverAsTraced(b, "LPDE", kBoth, 0.01, 3000);
@@ -40,7 +30,7 @@ TEST(GlassClassTest, LSDE_ReflectedByAPane) {
   Stage b;
   b.Up(0, 1, -0.5f, 0.5f, 0, b.receiver);
   b.Up(-1.5f, -0.5f, -0.5f, 0.5f, 0.7f, b.lamp);
-  b.Down(-4, 4, -4, 4, 1.6f, AddPane(&b));
+  b.Down(-4, 4, -4, 4, 1.6f, b.AddPane());
   ExpectReceiverAsTraced(b, "LSDE", kLinksOnly, 0.02, 100000, Options(Transport::kLinks, 2048));
 }
 
@@ -49,7 +39,7 @@ TEST(GlassClassTest, LDPDE_DiffuseLightThroughAPane) {
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
   b.Up(-0.3f, 0.3f, -0.3f, 0.3f, 1, b.lamp);
   b.Down(-1, 1, -1, 1, 2, b.AddLambert(Rgb(0.8f, 0.6f, 0.4f)));
-  b.Up(-3, 3, -3, 3, 0.5f, AddPane(&b));
+  b.Up(-3, 3, -3, 3, 0.5f, b.AddPane());
   ExpectReceiverAsTraced(b, "LDPDE", kBoth, 0.02, 20000);
 }
 
@@ -85,7 +75,7 @@ TEST(GlassClassTest, LPSPDE_ASmallLampInAPlanarMirrorBehindAPane) {
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
   b.Up(-0.2f, 0.2f, -0.2f, 0.2f, 0.6f, b.lamp);
   b.Down(-2, 2, -2, 2, 1.2f, b.AddMaterial("mirror", Metal(0, Rgb(0.9f, 0.8f, 0.7f))));
-  b.Down(-4, 4, -4, 4, 0.9f, AddPane(&b));
+  b.Down(-4, 4, -4, 4, 0.9f, b.AddPane());
   ExpectReceiverAsTraced(b, "LPSPDE", kLinksOnly, 0.03, 30000);
 }
 
@@ -96,7 +86,7 @@ TEST(GlassClassTest, LPDE_AndLDDE_ByAPaneWithABase) {
   Stage b;
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
   b.Down(-0.3f, 0.3f, -0.3f, 0.3f, 1, b.lamp);
-  b.Up(-1.5f, 1.5f, -1.5f, 1.5f, 0.5f, AddPane(&b, half));
+  b.Up(-1.5f, 1.5f, -1.5f, 1.5f, 0.5f, b.AddPane(half));
   b.Up(-1.5f, 1.5f, -1.5f, 1.5f, -0.05f, b.AddLambert(Rgb::Constant(0.9f)));
   ExpectReceiverAsTraced(b, "LPDE and LDDE", kLinksOnly, 0.02, 20000);
 }
@@ -108,7 +98,7 @@ TEST(GlassClassTest, ARoomWithALampBehindAPaneIsNotDark) {
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0.2f, b.receiver);
   b.Down(-0.3f, 0.3f, -0.3f, 0.3f, 1.95f, b.lamp);
   const Scene open = b.Build();
-  b.Down(-0.9f, 0.9f, -0.9f, 0.9f, 1.8f, AddPane(&b, Pane(1.5f)));
+  b.Down(-0.9f, 0.9f, -0.9f, 0.9f, 1.8f, b.AddPane(Pane(1.5f)));
   const Scene glazed = b.Build();
   const auto points = PointsOf(open, b.receiver, 8);
   const Estimate without = TracedIrradiance(open, points, 20000),

@@ -2,6 +2,7 @@
 // seen in every mode of rendering, against the path tracer. Each scene shows light of one class, so that one
 // left out, or brought both by lobes and by samples, is off by 100 % where a few are allowed.
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -191,15 +192,11 @@ TEST(ModeClassTest, LTE_ASheetSeenFromItsDarkSide) {
   ExpectModesAsTraced(b, {{1, -1.2f, 0.5f}, {0, 0, 0}}, "LTE", kEveryMode, 0.01);
 }
 
-uint32_t AddPane(Stage* b) {
-  return b->AddMaterial("pane", Pane(1.5f, Rgb(0.9f, 0.8f, 0.6f)), Rgb::Zero(), /*double_sided=*/true);
-}
-
 TEST(ModeClassTest, LPDE_ALampBehindAPane) {
   Stage b;
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.receiver);
   b.Down(-0.3f, 0.3f, -0.3f, 0.3f, 1.2f, b.lamp);
-  b.Up(-3, 3, -3, 3, 1, AddPane(&b));
+  b.Up(-3, 3, -3, 3, 1, b.AddPane());
   ExpectModesAsTraced(b, kFloor, "LPDE", kEveryMode, 0.015);
 }
 
@@ -209,19 +206,14 @@ TEST(ModeClassTest, LPGE_AHighlightThroughAPane) {
         Stage b;
         b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("brass", gloss));
         b.Down(-1.5f, -0.5f, -1.2f, -0.2f, 1.2f, b.lamp);
-        b.Up(-3, 3, -3, 3, 1, AddPane(&b));
+        b.Up(-3, 3, -3, 3, 1, b.AddPane());
         return b;
       },
       {{0.7f, 0.8f, 0.5f}, {0, 0, 0}, 0.1f}, "LPGE", 0.05, 0.015);
 }
 
 // Clear within but coloured, so that ways of different length count.
-MetallicRoughness Bottle() {
-  MetallicRoughness m = ClearGlass(1.5f);
-  m.attenuation_color = Rgb(0.9f, 0.7f, 0.5f);
-  m.attenuation_distance = 0.4f;
-  return m;
-}
+MetallicRoughness Bottle() { return ColouredGlass(Rgb(0.9f, 0.7f, 0.5f), 0.4f); }
 
 TEST(ModeClassTest, LRDE_ALampBehindASlab) {
   Stage b;
@@ -285,6 +277,28 @@ TEST(ModeClassTest, LDE_AGlowingBodyOfGlassGlowsOnItsOutside) {
   ExpectModesAsTraced(b, kFloor, "LDE by glowing glass", kEveryMode, 0.02);
 }
 
+// What gathering shows of a stage, by options that a test varies.
+class Gathering {
+ public:
+  Gathering(Stage stage, const View& view)
+      : scene_(Built(std::move(stage), view)), solution_(Solve(scene_, Options(Transport::kLinks))) {}
+
+  double Mean(const std::function<void(RenderOptions&)>& vary) const {
+    RenderOptions o = OptionsFor(kGatherMode, 8, 64);
+    vary(o);
+    return MeanOf(renderer_.Render(CameraView(scene_.cameras[0], 8, 8), o, nullptr)).mean();
+  }
+
+ private:
+  static Scene Built(Stage stage, const View& view) {
+    stage.AddCamera("view", view.eye, view.target, Vec3::UnitY(), view.fov);
+    return stage.Build();
+  }
+  const Scene scene_;
+  const Solution solution_;
+  const Renderer renderer_{solution_};
+};
+
 // Whether faint ways are followed does not depend on how many share the light.
 TEST(ModeClassTest, LSGE_AnyNumberOfGatheredDirectionsFindsTheLampInTheMirror) {
   MetallicRoughness plastic = Metal(0.2f, Rgb::Constant(0.02f));
@@ -293,14 +307,9 @@ TEST(ModeClassTest, LSGE_AnyNumberOfGatheredDirectionsFindsTheLampInTheMirror) {
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("plastic", plastic));
   b.Up(-1.8f, -0.6f, -0.6f, 0.6f, 0.5f, b.lamp);
   b.Down(-3, 3, -3, 3, 1.5f, b.AddMaterial("mirror", Metal(0)));
-  b.AddCamera("view", {1, 1, 0}, {0, 0, 0}, Vec3::UnitY(), 0.1f);
-  const Scene scene = b.Build();
-  const Solution solution = Solve(scene, Options(Transport::kLinks));
-  const Renderer renderer(solution);
-  RenderOptions o = OptionsFor(kGatherMode, 8, 64);
+  const Gathering gathering(b, {{1, 1, 0}, {0, 0, 0}});
   const auto mean = [&](int samples) {
-    o.gather_samples = samples;
-    return MeanOf(renderer.Render(CameraView(scene.cameras[0], 8, 8), o, nullptr)).mean();
+    return gathering.Mean([&](RenderOptions& o) { o.gather_samples = samples; });
   };
   const double few = mean(1);
   ASSERT_GT(few, 0.01);
@@ -313,15 +322,10 @@ TEST(ModeClassTest, LPGE_DoesNotDependOnTheDepthOfMirrors) {
   Stage b;
   b.Up(-0.5f, 0.5f, -0.5f, 0.5f, 0, b.AddMaterial("brass", Metal(0.2f, kBrass)));
   b.Down(-1.5f, -0.5f, -1.2f, -0.2f, 1.2f, b.lamp);
-  b.Up(-3, 3, -3, 3, 1, AddPane(&b));
-  b.AddCamera("view", {0.7f, 0.8f, 0.5f}, {0, 0, 0}, Vec3::UnitY(), 0.1f);
-  const Scene scene = b.Build();
-  const Solution solution = Solve(scene, Options(Transport::kLinks));
-  const Renderer renderer(solution);
-  RenderOptions o = OptionsFor(kGatherMode, 8, 64);
+  b.Up(-3, 3, -3, 3, 1, b.AddPane());
+  const Gathering gathering(b, {{0.7f, 0.8f, 0.5f}, {0, 0, 0}});
   const auto mean = [&](int depth) {
-    o.max_mirror_depth = depth;
-    return MeanOf(renderer.Render(CameraView(scene.cameras[0], 8, 8), o, nullptr)).mean();
+    return gathering.Mean([&](RenderOptions& o) { o.max_mirror_depth = depth; });
   };
   const double deep = mean(16);
   ASSERT_GT(deep, 0.1);

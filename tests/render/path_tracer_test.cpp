@@ -11,6 +11,7 @@
 
 #include "brdf/frame.h"
 #include "brdf/hemisphere_integral.h"
+#include "tests/support/metal.h"
 #include "tests/support/outgoing_integral.h"
 #include "tests/support/polygon_light.h"
 #include "tests/support/scene_builder.h"
@@ -19,17 +20,11 @@
 namespace lobe {
 namespace {
 
+using test::Metal;
 using test::SceneBuilder;
 
 constexpr double kPi = std::numbers::pi;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-MetallicRoughness Metal(float roughness, const Rgb& colour = Rgb::Constant(1)) {
-  MetallicRoughness m;
-  m.base_color = colour;
-  m.roughness = roughness;
-  return m;
-}
 
 MetallicRoughness Coated(float roughness, const Rgb& colour) {
   MetallicRoughness m = Metal(roughness, colour);

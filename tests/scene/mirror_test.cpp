@@ -2,36 +2,26 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include <gtest/gtest.h>
 
 #include "scene/tessellate.h"
+#include "tests/support/random_directions.h"
 #include "tests/support/scene_builder.h"
 
 namespace lobe {
 namespace {
 
+using test::RandomDirections;
 using test::SceneBuilder;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-class Random {
- public:
-  Vec3 Direction() { return Vec3(normal_(bits_), normal_(bits_), normal_(bits_)).normalized(); }
-  /// Within 90 degrees of `n`.
-  Vec3 Above(const Vec3& n) {
-    const Vec3 w = Direction();
-    return w.dot(n) > 0 ? w : Vec3(-w);
-  }
-
- private:
-  std::mt19937 bits_{11};
-  std::normal_distribution<float> normal_;
+std::normal_distribution<float> normal_;
 };
 
 TEST(MirrorDirectionTest, LiesInThePlaneAtTheSameAngleAndMirrorsBack) {
-  Random random;
+  RandomDirections random(11);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 n = random.Direction();
     const HitPoint at{Vec3::Zero(), n, n};
@@ -48,7 +38,7 @@ TEST(MirrorDirectionTest, LiesInThePlaneAtTheSameAngleAndMirrorsBack) {
 
 // An interpolated normal may turn the mirror image into the surface: it is lifted just above, and no further.
 TEST(MirrorDirectionTest, WhatWouldPointIntoTheSurfaceIsLiftedJustAboveIt) {
-  Random random;
+  RandomDirections random(11);
   int lifted = 0;
   for (int i = 0; i < 5000; ++i) {
     const Vec3 face = random.Direction();
@@ -79,7 +69,7 @@ TEST(FindHitPointTest, FlatFacesHaveTheFacesNormalOnTheSideThatWasMet) {
   const Mesh mesh = Tessellate(scene, {.max_edge = 0.4f});
   const RayTracer tracer(scene);
   const Vec3 n = scene.GeometricNormal(scene.faces[0]);
-  Random random;
+  RandomDirections random(11);
   int met[2] = {0, 0};
   for (int i = 0; i < 500; ++i) {
     const Vec3 target(0.3f, 0.7f, 0);
@@ -108,7 +98,7 @@ TEST(FindHitPointTest, CurvedPatchesHaveInterpolatedNormalsOnBothSides) {
   const Scene scene = b.Build();
   const Mesh mesh = Tessellate(scene, {.max_edge = 0.05f});
   const RayTracer tracer(scene);
-  Random random;
+  RandomDirections random(11);
   double flattest = 1;
   for (int i = 0; i < 2000; ++i) {
     const bool inside = i % 2;

@@ -2,12 +2,12 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/support/glass.h"
+#include "tests/support/random_directions.h"
 #include "tests/support/scene_builder.h"
 
 namespace lobe {
@@ -15,22 +15,12 @@ namespace {
 
 using test::ClearGlass;
 using test::Pane;
+using test::RandomDirections;
 using test::SceneBuilder;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-class Random {
- public:
-  Vec3 Direction() { return Vec3(normal_(bits_), normal_(bits_), normal_(bits_)).normalized(); }
-  Vec3 Above(const Vec3& n) {
-    const Vec3 w = Direction();
-    return w.dot(n) > 0 ? w : Vec3(-w);
-  }
-  float Between(float a, float b) { return std::uniform_real_distribution<float>(a, b)(bits_); }
-
- private:
-  std::mt19937 bits_{23};
-  std::normal_distribution<float> normal_;
+std::normal_distribution<float> normal_;
 };
 
 // Materials without faces: Continue needs no more.
@@ -118,7 +108,7 @@ TEST(SpecularSurfacesTest, KindsFollowFromTransmissionThicknessAndRoughness) {
 }
 
 TEST(SpecularSurfacesTest, ClearWhiteGlassLosesNothingAtAnyAngleFromEitherSide) {
-  Random random;
+  RandomDirections random(23);
   for (int i = 0; i < 2000; ++i) {
     const auto s = Surfaces({ClearGlass(random.Between(1.01f, 2.5f)), ClearGlass(random.Between(1.01f, 2.5f)),
                              Pane(random.Between(1, 2.5f))});
@@ -138,7 +128,7 @@ TEST(SpecularSurfacesTest, ClearWhiteGlassLosesNothingAtAnyAngleFromEitherSide) 
 }
 
 TEST(SpecularSurfacesTest, RefractsBySnellsLawAndTheWayBackIsTheSame) {
-  Random random;
+  RandomDirections random(23);
   int refracted = 0, total = 0;
   for (int i = 0; i < 4000; ++i) {
     // From air, or from water around the glass.
@@ -205,7 +195,7 @@ TEST(SpecularSurfacesTest, AtNormalIncidenceBothMediaDecideWhatIsReflected) {
 
 TEST(SpecularSurfacesTest, BetweenEqualMediaThereIsNoBoundary) {
   const auto s = Surfaces({ClearGlass(1.33f), ClearGlass(1.33f), ClearGlass(1.5f), ClearGlass(1.0f)});
-  Random random;
+  RandomDirections random(23);
   for (int i = 0; i < 500; ++i) {
     const Vec3 n = random.Direction(), wo = random.Above(n);
     if (wo.dot(n) < 1e-3f) continue;
@@ -224,7 +214,7 @@ TEST(SpecularSurfacesTest, BetweenEqualMediaThereIsNoBoundary) {
 
 TEST(SpecularSurfacesTest, InterpolatedNormalsSendNothingToTheWrongSideOfTheFace) {
   const auto s = Surfaces({ClearGlass(1.5f), Pane(1.5f)});
-  Random random;
+  RandomDirections random(23);
   for (int i = 0; i < 5000; ++i) {
     const Vec3 face = random.Direction();
     const Vec3 n = (face + 0.6f * random.Direction()).normalized();
@@ -339,7 +329,7 @@ TEST(SpecularSurfacesTest, ABallOfIndexOneIsInvisible) {
   SceneBuilder b;
   b.AddSphere({0, 0, 0}, 1, b.AddMaterial("nothing", ClearGlass(1)), 12);
   const Scene scene = b.Build();
-  Random random;
+  RandomDirections random(23);
   int met = 0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 from = 3 * random.Direction(), to = random.Between(0, 0.99f) * random.Direction();

@@ -14,12 +14,14 @@
 #include "solver/memory.h"
 #include "solver/solver.h"
 #include "tests/support/glass.h"
+#include "tests/support/same_links.h"
 #include "tests/support/scene_builder.h"
 
 namespace lobe {
 namespace {
 
 using test::ClearGlass;
+using test::ColouredGlass;
 using test::Pane;
 using test::SceneBuilder;
 
@@ -52,12 +54,7 @@ Scene GlassRoom(const MetallicRoughness& body, const MetallicRoughness& pane, fl
   return b.Build();
 }
 
-MetallicRoughness Bottle() {
-  MetallicRoughness m = ClearGlass(1.5f);
-  m.attenuation_color = Rgb(0.5f, 0.7f, 0.9f);
-  m.attenuation_distance = 0.3f;
-  return m;
-}
+MetallicRoughness Bottle() { return ColouredGlass(Rgb(0.5f, 0.7f, 0.9f), 0.3f); }
 
 // Of all that leaves a link, per channel, by its ends.
 struct Ends {
@@ -139,23 +136,7 @@ TEST(GlassLinksTest, AreTheSameBitsForAnyNumberOfThreads) {
     tbb::task_arena arena(threads);
     arena.execute([&] { all.push_back(std::make_unique<Links>(room.Trace({.links = 128}))); });
   }
-  for (int i = 1; i < 3; ++i) {
-    EXPECT_EQ(all[0]->rays(), all[i]->rays());
-    EXPECT_EQ(all[0]->bytes(), all[i]->bytes());
-    for (uint32_t n = 0; n < room.mesh.node_count(); ++n) {
-      const auto x = all[0]->of(n), y = all[i]->of(n);
-      ASSERT_TRUE(std::equal(x.begin(), x.end(), y.begin(), y.end()));
-      for (const uint32_t link : x) {
-        if (!Links::IsChain(link)) continue;
-        const Links::Hop *p = all[0]->chain(link), *q = all[i]->chain(link);
-        do {
-          ASSERT_EQ(p->node, q->node);
-          ASSERT_TRUE((p->Throughput() == q->Throughput()).all());
-          ASSERT_EQ(p->last, q->last);
-        } while (++q, !(p++)->last);
-      }
-    }
-  }
+  for (int i = 1; i < 3; ++i) test::ExpectSameLinks(*all[0], *all[i], room.mesh.node_count());
 }
 
 TEST(GlassLinksTest, FloorInsideAGlassBlockIsNotHidden) {

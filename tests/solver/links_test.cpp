@@ -17,6 +17,7 @@
 #include "scene/tessellate.h"
 #include "solver/exposure.h"
 #include "solver/solution.h"
+#include "tests/support/same_links.h"
 #include "tests/support/scene_builder.h"
 
 namespace lobe {
@@ -219,24 +220,7 @@ TEST(LinksTest, AreTheSameBitsForAnyNumberOfThreads) {
     tbb::task_arena arena(threads);
     arena.execute([&] { all.push_back(std::make_unique<Links>(room.Trace({.links = 128}))); });
   }
-  for (int i = 1; i < 3; ++i) {
-    EXPECT_EQ(all[0]->hidden(), all[i]->hidden());
-    EXPECT_EQ(all[0]->rays(), all[i]->rays());
-    for (uint32_t n = 0; n < room.mesh.node_count(); ++n) {
-      const auto x = all[0]->of(n), y = all[i]->of(n);
-      ASSERT_TRUE(std::equal(x.begin(), x.end(), y.begin(), y.end()));
-      for (const uint32_t link : x) {
-        if (!Links::IsChain(link)) continue;
-        const Links::Hop *p = all[0]->chain(link), *q = all[i]->chain(link);
-        for (;; ++p, ++q) {
-          ASSERT_EQ(p->node, q->node);
-          ASSERT_EQ(p->direction, q->direction);
-          ASSERT_EQ(p->last, q->last);
-          if (p->last) break;
-        }
-      }
-    }
-  }
+  for (int i = 1; i < 3; ++i) test::ExpectSameLinks(*all[0], *all[i], room.mesh.node_count());
 }
 
 TEST(LinksTest, StopWhenToldAndSaySo) {

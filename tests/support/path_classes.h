@@ -15,6 +15,8 @@
 #include "render/path_tracer.h"
 #include "render/renderer.h"
 #include "solver/solver.h"
+#include "tests/support/glass.h"
+#include "tests/support/metal.h"
 #include "tests/support/polygon_light.h"
 #include "tests/support/scene_builder.h"
 
@@ -23,13 +25,6 @@ namespace lobe::test {
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline const std::vector<Transport> kBoth = {Transport::kLinks, Transport::kShooting};
 inline const std::vector<Transport> kLinksOnly = {Transport::kLinks};
-
-inline MetallicRoughness Metal(float roughness, const Rgb& colour = Rgb::Constant(1)) {
-  MetallicRoughness m;
-  m.base_color = colour;
-  m.roughness = roughness;
-  return m;
-}
 
 // Reflects `rho` and passes `tau`, without a coat.
 inline MetallicRoughness Sheet(float rho, float tau) {
@@ -54,6 +49,9 @@ struct Stage : SceneBuilder {
   }
   uint32_t Down(float x0, float x1, float z0, float z1, float y, uint32_t material) {
     return AddQuad({x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1}, material);
+  }
+  uint32_t AddPane(const MetallicRoughness& glass = Pane(1.5f, Rgb(0.9f, 0.8f, 0.6f))) {
+    return AddMaterial("pane", glass, Rgb::Zero(), /*double_sided=*/true);
   }
 };
 
