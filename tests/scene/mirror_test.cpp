@@ -17,9 +17,6 @@ using test::SceneBuilder;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-std::normal_distribution<float> normal_;
-};
-
 TEST(MirrorDirectionTest, LiesInThePlaneAtTheSameAngleAndMirrorsBack) {
   RandomDirections random(11);
   for (int i = 0; i < 2000; ++i) {

@@ -20,9 +20,6 @@ using test::SceneBuilder;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-std::normal_distribution<float> normal_;
-};
-
 // Materials without faces: Continue needs no more.
 SpecularSurfaces Surfaces(const std::vector<Reflectance>& reflectances) {
   SceneBuilder b;
