@@ -43,7 +43,8 @@ void Print(const Case& test, int runs) {
   std::vector<MaterialLobes> materials;
   for (const auto& m : s.scene.materials) materials.emplace_back(m.reflectance, s.options.lobes, cache);
   const ShootingField emission(s.mesh, FindEmitters(s.scene));
-  Receiver receiver(s.mesh, tracer, materials);
+  const SpecularSurfaces specular(s.scene);
+  Receiver receiver(s.mesh, tracer, materials, specular);
   std::vector<float> out(size_t(6) * kMaxBasisSize);
   std::vector<Ray> shadow, links;
   for (uint32_t n = 0; n < s.mesh.node_count(); ++n) {

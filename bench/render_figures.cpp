@@ -259,7 +259,7 @@ void WriteText(const std::string& path, const std::string& text) {
 void PlotModes(const Subject& subject, const std::vector<Measurement>& all) {
   const std::string further = "CPU seconds of a further view",
                     first = "CPU seconds of a first view, with solve";
-  std::vector<PlotPanel> panels;
+  std::vector<LogLogPanel> panels;
   for (const auto& [figure, name] :
        {std::pair{&ViewErrors::pixel, "pixel error, %"}, std::pair{&ViewErrors::block, "block error, %"}}) {
     panels.push_back({"", first, name, Curves(all, &Measurement::first_view, figure)});

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "brdf/lobe_table.h"
 
@@ -48,12 +49,12 @@ int MeasuredSampler::AngleRange(float cos_o) {
   return std::min(int(t * kAngles), kAngles - 1);
 }
 
-MeasuredSampler::MeasuredSampler(std::shared_ptr<const MeasuredBrdf> data) : data_(std::move(data)) {
+void MeasuredSampler::Tabulate() const {
   ring_sum_.resize(size_t(kAngles) * kPolar);
   sector_sum_.resize(size_t(kAngles) * kPolar * kAzimuth);
   density_.resize(sector_sum_.size());
   constexpr int kSide = 3;  // points a cell and direction
-  tbb::parallel_for(0, kAngles, [&](int angle) {
+  const auto tabulate_angle = [&](int angle) {
     const double cos_o = IncidenceSpline::CosineOfParameter((angle + 0.5) / kAngles);
     const Vec3d wo(std::sqrt(1 - cos_o * cos_o), 0, cos_o);
     std::vector<double> rings(kPolar), sectors(kAzimuth), cells(size_t(kPolar) * kAzimuth);
@@ -92,10 +93,13 @@ MeasuredSampler::MeasuredSampler(std::shared_ptr<const MeasuredBrdf> data) : dat
       density_[size_t(angle) * cells.size() + i] =
           float(total > 0 ? cells[i] / total : 1.0 / (kPolar * area));
     }
-  });
+  };
+  // Isolated, or a thread that waits for its angles would take up a task that waits for all of them.
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, kAngles, tabulate_angle); });
 }
 
 Vec3 MeasuredSampler::Sample(const Vec3& wo, float u1, float u2, float u3) const {
+  std::call_once(tabulated_, [this] { Tabulate(); });
   constexpr float kTurn = 2 * std::numbers::pi_v<float>;
   if (u3 < kCosineShare) {
     const float r = std::sqrt(u1), phi = kTurn * u2;
@@ -119,6 +123,7 @@ Vec3 MeasuredSampler::Sample(const Vec3& wo, float u1, float u2, float u3) const
 }
 
 float MeasuredSampler::Pdf(const Vec3& wo, const Vec3& wi) const {
+  std::call_once(tabulated_, [this] { Tabulate(); });
   constexpr float kPiF = std::numbers::pi_v<float>;
   const Vec3 sum = wo + wi;
   const float theta = std::atan2(std::hypot(sum.x(), sum.y()), sum.z());

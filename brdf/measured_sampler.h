@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "brdf/measured.h"
@@ -13,9 +15,12 @@ namespace lobe {
 /// kAzimuth cells: rings whose edges crowd at the normal as MERL's do, in sectors counted from wo's azimuth,
 /// alike on both sides. A tenth of the directions is drawn by the cosine alone, so that no direction the
 /// cells misjudge carries much weight.
+///
+/// The cells cost some hundred thousand values of f, so they are made when something is first drawn: pictures
+/// of stored light draw nothing.
 class MeasuredSampler {
  public:
-  explicit MeasuredSampler(std::shared_ptr<const MeasuredBrdf> data);
+  explicit MeasuredSampler(std::shared_ptr<const MeasuredBrdf> data) : data_(std::move(data)) {}
 
   /// u1, u2, u3 uniform in [0, 1). May lie below the horizon.
   Vec3 Sample(const Vec3& wo, float u1, float u2, float u3) const;
@@ -31,10 +36,13 @@ class MeasuredSampler {
 
   static int AngleRange(float cos_o);
 
+  void Tabulate() const;  // once, whichever thread comes first
+
   std::shared_ptr<const MeasuredBrdf> data_;
+  mutable std::once_flag tabulated_;
   // Per range of theta_o: running sums of the rings' chances, of the sectors' within each ring, and each
   // cell's density per steradian of half vectors.
-  std::vector<float> ring_sum_, sector_sum_, density_;
+  mutable std::vector<float> ring_sum_, sector_sum_, density_;
 };
 
 }  // namespace lobe

@@ -26,6 +26,17 @@ void FoldSquare(float* u, float* v) {
 
 }  // namespace
 
+ReflectanceSampler PathScene::SamplerOf(const Scene& scene, uint32_t material) const {
+  const Reflectance& reflectance = scene.materials[material].reflectance;
+  if (const auto* measured = std::get_if<Measured>(&reflectance)) {
+    for (uint32_t m = 0; m < material; ++m) {
+      const auto* before = std::get_if<Measured>(&scene.materials[m].reflectance);
+      if (before && before->data == measured->data) return sampler(m);
+    }
+  }
+  return ReflectanceSampler(reflectance);
+}
+
 PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
   for (const Material& m : scene.materials) {
     const auto kind = specular_.kind(uint32_t(surfaces_.size()));
@@ -33,8 +44,8 @@ PathScene::PathScene(const Scene& scene) : tracer_(scene), specular_(scene) {
     const float base_mean =
         glass ? (glass->UnderCoat(glass->F0()) * (glass->DiffuseColor() + glass->TransmissionColor())).mean()
               : 0.0f;
-    surfaces_.push_back({ReflectanceSampler(m.reflectance), m.emission, m.emits(), m.emits_behind(),
-                         m.double_sided, kind, base_mean});
+    surfaces_.push_back({SamplerOf(scene, uint32_t(surfaces_.size())), m.emission, m.emits(),
+                         m.emits_behind(), m.double_sided, kind, base_mean});
   }
 
   // Of faces at one place rays meet only some; lamps no ray can meet must not be sampled either.
@@ -134,7 +145,7 @@ PathScene::LampSample PathScene::SampleLamp(const Vertex& vertex, const Reflecta
   if (!(value.f > 0).any()) return out;
 
   const Vec3 from = vertex.position + vertex.normal * std::copysign(vertex.lift, above);
-  const Vec3 to = target + lamp.normal * std::copysign(tracer_.Lift(lamps_.face(chosen)), towards);
+  const Vec3 to = target + lamp.normal * std::copysign(tracer_.LiftOfEnd(lamps_.face(chosen), from), towards);
   out.shadow = {from, 0, to - from, 1};  // Visible takes its length for the way
   out.light_pdf = lamps_.PerArea(chosen, choice) * distance2 * distance / std::abs(towards);
   out.direction_pdf = value.pdf;

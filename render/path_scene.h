@@ -89,12 +89,7 @@ class PathScene {
   /// What comes along a shadow ray through `medium` (a material, or kNone: air): nothing if it is blocked,
   /// else what the medium and panes on the way let through.
   Rgb Visible(const Ray& shadow, uint32_t medium) const {
-    Rgb visible = Rgb::Constant(1);
-    if (specular_.any_pane()) {
-      visible = specular_.SeeThrough(tracer_, shadow);
-    } else if (tracer_.Occluded(shadow)) {
-      return Rgb::Zero();
-    }
+    Rgb visible = specular_.SeeThrough(tracer_, shadow);
     if (medium != kNone) visible *= specular_.Transmittance(medium, shadow.direction.norm());
     return visible;
   }
@@ -110,6 +105,9 @@ class PathScene {
     uint32_t smooth = kNone;         // into corner_normals_; kNone: flat
     bool emits[2] = {false, false};  // by side, if rays can meet that side
   };
+
+  // Materials of the same data share what draws from it.
+  ReflectanceSampler SamplerOf(const Scene& scene, uint32_t material) const;
 
   RayTracer tracer_;
   SpecularSurfaces specular_;

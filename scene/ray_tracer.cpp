@@ -18,8 +18,6 @@ namespace {
 
 constexpr uint32_t kAllMasks = 0xffffffffu;
 
-constexpr float kRoundings = 4;  // of coordinates, by which rays are lifted; see RayTracer::RayTracer
-
 /// Rays that meet an edge meet several faces at one t, or a rounding error apart. Which of them Embree
 /// reports depends on the order it comes to them, and that on the other rays of a packet. So the choice is
 /// made here: the least t and of equals the first face, by a filter that sees all that could be chosen.
@@ -325,13 +323,14 @@ RayTracer::RayTracer(const Scene& scene) : impl_(std::make_unique<Impl>()) {
     for (uint32_t v : face.vertex) farthest = std::max(farthest, scene.positions[v].cwiseAbs().maxCoeff());
   }
   epsilon_ = kRoundings * std::ldexp(farthest, -23);
-  const auto corners = [&](uint32_t f) { return scene.Corners(scene.faces[f]); };
-  const uint32_t count = static_cast<uint32_t>(scene.faces.size());
-  for (uint32_t f = 0; f < count; ++f) {
-    if (Lift(corners(f)) == epsilon_) continue;
-    for (uint32_t g = 0; g < count; ++g) face_lift_.push_back(Lift(corners(g)));
-    break;
+  for (const Face& face : scene.faces) {
+    const auto p = scene.Corners(face);
+    Eigen::AlignedBox3f box(p[0]);
+    box.extend(p[1]).extend(p[2]);
+    face_lift_.push_back(LiftOf(box));
   }
+  const auto all = [this](float lift) { return lift == epsilon_; };
+  if (std::all_of(face_lift_.begin(), face_lift_.end(), all)) face_lift_ = {};
 }
 
 float RayTracer::LiftOf(const Eigen::AlignedBox3f& box) const {
@@ -342,13 +341,8 @@ float RayTracer::LiftOf(const Eigen::AlignedBox3f& box) const {
   return std::min(epsilon_, std::max(kRoundings * std::ldexp(farthest, -23), kOfSize * size));
 }
 
-float RayTracer::Lift(const std::array<Vec3, 3>& corners) const {
-  Eigen::AlignedBox3f box(corners[0]);
-  box.extend(corners[1]).extend(corners[2]);
-  return LiftOf(box);
-}
-
 std::vector<float> RayTracer::PatchLifts(const Mesh& mesh) const {
+  if (face_lift_.empty()) return std::vector<float>(mesh.patches.size(), epsilon_);
   std::vector<float> out;
   for (const Mesh::Patch& patch : mesh.patches) {
     Eigen::AlignedBox3f box;

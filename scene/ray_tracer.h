@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -73,11 +75,18 @@ class RayTracer {
   /// size will do, as long as that is a few rounding errors of its own: a coin on a plane a million metres
   /// wide must not be read half a metre above itself.
   float Lift(uint32_t face) const { return face_lift_.empty() ? epsilon_ : face_lift_[face]; }
-  float Lift(const std::array<Vec3, 3>& corners) const;
+  /// The same for the point that a ray from `from` is to end just short of: how far the ray misses it by
+  /// rounding follows from both.
+  float LiftOfEnd(uint32_t face, const Vec3& from) const {
+    return face_lift_.empty() ? epsilon_ : std::min(epsilon_, std::max(face_lift_[face], Roundings(from)));
+  }
   /// For the nodes of each patch of `mesh`.
   std::vector<float> PatchLifts(const Mesh& mesh) const;
 
  private:
+  // A few rounding errors of a point's coordinates.
+  static float Roundings(const Vec3& at) { return kRoundings * std::ldexp(at.cwiseAbs().maxCoeff(), -23); }
+  static constexpr float kRoundings = 4;  // see the constructor
   float LiftOf(const Eigen::AlignedBox3f& box) const;
 
   std::vector<float> face_lift_;  // empty: all epsilon_

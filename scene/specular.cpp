@@ -118,7 +118,8 @@ SpecularWays SpecularSurfaces::Continue(uint32_t material, Side side, const HitP
   }
   const float eta = n_here / n_beyond;
   const float sine2_beyond = eta * eta * (1 - cosine * cosine);
-  if (!(sine2_beyond < 1)) {  // an index of 0, infinity, gives no number at all
+  // An index of 0 stands for infinity: nothing gets in, and nothing that is inside gets out.
+  if (!(eta > 0 && sine2_beyond < 1)) {
     ways.reflection.weight = Rgb::Constant(1);
     return ways;
   }
@@ -173,6 +174,7 @@ RayHit SpecularSurfaces::IntersectPastPanes(const RayTracer& tracer, Ray* ray, R
 }
 
 Rgb SpecularSurfaces::SeeThrough(const RayTracer& tracer, const Ray& ray) const {
+  if (!any_pane_) return Rgb::Constant(tracer.Occluded(ray) ? 0.0f : 1.0f);
   Rgb passed = Rgb::Constant(1);
   Ray piece = ray;
   if (IntersectPastPanes(tracer, &piece, &passed).hit()) return Rgb::Zero();

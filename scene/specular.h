@@ -88,8 +88,7 @@ class SpecularSurfaces {
   /// and `ray` becomes its last piece, behind the last of them. After kMostPanes nothing comes through: a
   /// miss, and black.
   RayHit IntersectPastPanes(const RayTracer& tracer, Ray* ray, Rgb* passed) const;
-  /// Of light along `ray`, up to its t_max, by panes alone: black if anything else is in its way. Without
-  /// panes in the scene RayTracer::Occluded says the same for less.
+  /// Of light along `ray`, up to its t_max, by panes alone: black if anything else is in its way.
   Rgb SeeThrough(const RayTracer& tracer, const Ray& ray) const;
   static constexpr int kMostPanes = 64;
 

@@ -125,7 +125,7 @@ std::optional<Sighting> FindInSight(const Scene& scene, const RayTracer& tracer,
     const float u = random.Next(), v = random.Next();
     const Vec3 position = PointOnTriangle(scene.Corners(face), u, v);
     const Vec3 at = position + normal * tracer.Lift(f);
-    const Vec3 to = lit.position + lit.normal * tracer.Lift(lit.face) - at;
+    const Vec3 to = lit.position + lit.normal * tracer.LiftOfEnd(lit.face, at) - at;
     if (to.dot(normal) > 0 && to.dot(lit.normal) < 0 && !tracer.Occluded({at, 0.0f, to, 1.0f})) {
       return Sighting{f, position, normal};
     }

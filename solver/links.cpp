@@ -302,7 +302,7 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
 
   Tracing tracing{scene, mesh, ElementLocator(mesh), tracer, materials, options_};
   for (const auto& m : materials) {
-    tracing.mirror.push_back(options.follow_mirrors && m.kind() == GlossKind::kMirror && !m.glass());
+    tracing.mirror.push_back(options.follow_mirrors && m.mirror());
     tracing.specular_at.push_back(tracing.mirror.back() || m.glass());
     tracing.any_specular |= tracing.specular_at.back() != 0;
   }

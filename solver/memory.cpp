@@ -97,7 +97,7 @@ MemoryNeed EstimateMemory(const Scene& scene, const MeshCounts& counts,
   for (size_t m = 0; m < counts.nodes.size(); ++m) {
     need.lobes += NodeLobeBytes(materials[m]) * counts.nodes[m];
     link_count += Links::PatternOf(materials[m], links).count() * counts.nodes[m];
-    if (materials[m].kind() == GlossKind::kMirror && !materials[m].glass()) mirror_nodes += counts.nodes[m];
+    if (materials[m].mirror()) mirror_nodes += counts.nodes[m];
   }
   need.file = kFileFields * need.lobes + kFilePerNode * nodes + kFilePerElement * counts.elements;
   need.lobes = kFields * need.lobes + kFieldPerNode * nodes;
@@ -105,12 +105,14 @@ MemoryNeed EstimateMemory(const Scene& scene, const MeshCounts& counts,
   const double chains = by_links && nodes > 0 ? link_count * mirror_nodes / nodes : 0.0;
   need.links = 4 * link_count + kPerChain * chains;
   // Glass has few nodes or none; links meet it as often as its share of the area says.
-  double glass_area = 0, area = 0;
-  for (const Face& face : scene.faces) {
-    area += scene.Area(face);
-    if (materials[face.material].glass()) glass_area += scene.Area(face);
+  if (std::any_of(materials.begin(), materials.end(), [](const MaterialLobes& m) { return m.glass(); })) {
+    double glass_area = 0, area = 0;
+    for (const Face& face : scene.faces) {
+      area += scene.Area(face);
+      if (materials[face.material].glass()) glass_area += scene.Area(face);
+    }
+    if (glass_area > 0) need.links += kPerGlassChain * link_count * glass_area / area;
   }
-  if (glass_area > 0) need.links += kPerGlassChain * link_count * glass_area / area;
   // The locator is gone before a file is written.
   need.links += std::max(0.0, kLocatorPerElement * counts.elements - need.file - need.lobes / kFields);
   return need;

@@ -17,9 +17,7 @@ std::vector<PlanarMirror> FindPlanarMirrors(const Mesh& mesh, const std::vector<
   std::vector<Candidate> candidates;
   for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
     const Mesh::Patch& patch = mesh.patches[p];
-    if (patch.node_begin == patch.node_end || !patch.planar ||
-        materials[patch.material].kind() != GlossKind::kMirror || materials[patch.material].glass())
-      continue;
+    if (patch.node_begin == patch.node_end || !patch.planar || !materials[patch.material].mirror()) continue;
     const Vec3& point = mesh.node_position[patch.node_begin];
     const Vec3& normal = mesh.node_sample_normal[patch.node_begin];
     // Equal shading normals do not make a plane: steps share theirs.

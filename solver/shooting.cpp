@@ -30,8 +30,9 @@ constexpr float kGlossyCaution = 4.0f;
 constexpr float kSeenSmall = 0.7f;
 constexpr float kPerThreshold = 1.4f;
 
-// If what is not hidden was expected to bring less than this share, it had too few rays. (chosen) The rays
-// are shared out anew without what they did not see, which has brought nothing and will bring nothing: so no
+// Roots that promise less than this share of what the most promising one does are asked anew, with as many
+// rays as all had, if what promises more is hidden but for less than this share of all. (chosen) What
+// promises more keeps its rays, and whether the others are asked anew does not depend on what they saw: so no
 // estimate is biased by it. So many times at most, for lamps ever dimmer.
 constexpr double kTooFewRays = 0.1;
 constexpr int kMostSharings = 16;
@@ -99,7 +100,7 @@ StandInPoint StandIn(const std::array<Vec3, 3>& p, const Vec3& cell_normal, cons
 }  // namespace
 
 ShootingField::ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters) : mesh_(&mesh) {
-  for (const auto& e : emitters) roots_.push_back({e.corners, e.normal, e.radiance, kNone, false});
+  for (const auto& e : emitters) roots_.push_back({e.corners, e.normal, e.radiance, kNone, false, e.face});
 }
 
 ShootingField::ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitters,
@@ -118,6 +119,7 @@ ShootingField::ShootingField(const Mesh& mesh, const std::vector<Emitter>& emitt
                         e.radiance,
                         kNone,
                         false,
+                        e.face,
                         m});
     }
   }
@@ -150,9 +152,9 @@ ShootingField::ShootingField(const Scene& scene, const Mesh& mesh, const std::ve
       while (mesh.cells[leaf].child != kNone) leaf = mesh.cells[leaf].child;
       const bool glossy = !lobes.degrees(mesh.elements[mesh.cells[leaf].element][0]).diffuse();
       if (side == Side::kFront) {
-        roots_.push_back({p, n, cell_radiance_[cell], cell, glossy});
+        roots_.push_back({p, n, cell_radiance_[cell], cell, glossy, f});
       } else {
-        roots_.push_back({{p[0], p[2], p[1]}, -n, cell_radiance_[cell], cell, glossy});
+        roots_.push_back({{p[0], p[2], p[1]}, -n, cell_radiance_[cell], cell, glossy, f});
       }
     }
   }
@@ -176,11 +178,11 @@ Rgb ShootingField::Radiance(uint32_t element, const float weight[3], const Vec3&
 }
 
 Receiver::Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials,
-                   const SpecularSurfaces* specular)
+                   const SpecularSurfaces& specular)
     : mesh_(mesh),
       tracer_(tracer),
       materials_(materials),
-      panes_(specular && specular->any_pane() ? specular : nullptr),
+      specular_(specular),
       basis_(kMaxBasisSize),
       lifts_(tracer.PatchLifts(mesh)) {}
 
@@ -242,7 +244,7 @@ void Receiver::Emit(const ShootingField& field, uint32_t root_index, uint32_t no
     radiance = field.cell_radiance(at);
   }
   const Vec3 from = point + mesh_.node_sample_normal[node] * lifts_[mesh_.node_patch[node]];
-  const Vec3 to = target + root.normal * tracer_.Lift(root.corners);
+  const Vec3 to = target + root.normal * tracer_.LiftOfEnd(root.face, from);
   if (root.glossy) {
     radiance = field.Radiance(element, weights.data(), (from - to).normalized(), basis_.data());
     ++work.lobe_reads;
@@ -254,18 +256,14 @@ void Receiver::Emit(const ShootingField& field, uint32_t root_index, uint32_t no
 Rgb Receiver::ByMirror(const PlanarMirror& mirror, const Ray& ray) const {
   Rgb passed = Rgb::Constant(1);
   Ray piece = ray;
-  const RayHit hit = panes_ ? panes_->IntersectPastPanes(tracer_, &piece, &passed) : tracer_.Intersect(ray);
+  const RayHit hit = specular_.IntersectPastPanes(tracer_, &piece, &passed);
   if (!hit.hit()) return Rgb::Zero();
   const auto where = mesh_.Locate(hit.face, hit.side, hit.u, hit.v);
   if (where.element == kNone || mesh_.element_patch[where.element] != mirror.patch) return Rgb::Zero();
   const Vec3 at = piece.origin + piece.direction * hit.t + mirror.normal * tracer_.Lift(hit.face);
   const Vec3 lamp = mirror.Image(ray.origin + ray.direction);
   const Ray beyond{at, 0.0f, lamp - at, 1.0f};
-  if (panes_) {
-    passed *= panes_->SeeThrough(tracer_, beyond);
-  } else if (tracer_.Occluded(beyond)) {
-    return Rgb::Zero();
-  }
+  passed *= specular_.SeeThrough(tracer_, beyond);
   const float cosine = -ray.direction.normalized().dot(mirror.normal);
   return materials_[mesh_.patches[mirror.patch].material].SentOn(std::clamp(cosine, 0.0f, 1.0f)) * passed;
 }
@@ -283,7 +281,7 @@ bool Receiver::EmitEvenly(const ShootingField& field, uint32_t root_index, uint3
   }
   const float irradiance = LightOfTriangle(point, normal, p).irradiance;
   const Vec3 from = point + mesh_.node_sample_normal[node] * lifts_[mesh_.node_patch[node]];
-  const Vec3 lift = root.normal * tracer_.Lift(root.corners);
+  const Vec3 lift = root.normal * tracer_.LiftOfEnd(root.face, from);
   const float u0 = random.Next(), v0 = random.Next();
   const size_t first = rays_.size();
   double sum = 0;  // of up to millions
@@ -320,7 +318,7 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   float total = 0;
   for (uint32_t i = 0; i < roots.size(); ++i) {
     const auto& root = roots[i];
-    if (skipped_[i]) continue;
+    if (settled_[i]) continue;
     if ((point - root.corners[0]).dot(root.normal) <= 0) continue;
     const float light = EstimateTriangleLight(point, normal, root.corners).irradiance;
     expected_[i] = light * std::abs(root.radiance.sum()) * (root.glossy ? kGlossyCaution : 1);
@@ -373,55 +371,76 @@ void Receiver::Cut(uint32_t node, const ShootingField& field, int samples, float
   }
 }
 
-uint64_t Receiver::Trace(const ShootingField& field) {
+uint64_t Receiver::Trace(const ShootingField& field, size_t first) {
   occluded_.resize(rays_.size());
+  const size_t count = rays_.size() - first;
   if (!field.mirrors().empty()) {
-    for (size_t i = 0; i < rays_.size(); ++i) {
+    for (size_t i = first; i < rays_.size(); ++i) {
       deltas_[i].irradiance *= ByMirror(field.mirrors()[deltas_[i].mirror], rays_[i]);
       occluded_[i] = (deltas_[i].irradiance <= 0).all();
     }
-    return 2 * rays_.size();
+    return 2 * count;
   }
-  if (!panes_) {
-    tracer_.Occluded(rays_, occluded_, /*coherent=*/true);
+  if (!specular_.any_pane()) {
+    tracer_.Occluded({rays_.data() + first, count}, {occluded_.data() + first, count}, /*coherent=*/true);
   } else {
-    for (size_t i = 0; i < rays_.size(); ++i) {
-      const Rgb passed = panes_->SeeThrough(tracer_, rays_[i]);
+    for (size_t i = first; i < rays_.size(); ++i) {
+      const Rgb passed = specular_.SeeThrough(tracer_, rays_[i]);
       deltas_[i].irradiance *= passed;
       occluded_[i] = (passed <= 0).all();
     }
   }
-  return rays_.size();
+  return count;
 }
 
-bool Receiver::SkipHidden() {
+bool Receiver::SettlePromising(size_t first) {
+  // What is settled already is expected to bring nothing more: Cut leaves it out.
+  const float bar = kTooFewRays * *std::max_element(expected_.begin(), expected_.end());
   enum : uint8_t { kNotAsked, kHidden, kSeen };
   seen_.assign(expected_.size(), kNotAsked);
-  for (size_t i = 0; i < deltas_.size(); ++i) {
+  for (size_t i = first; i < deltas_.size(); ++i) {
     uint8_t& seen = seen_[deltas_[i].root];
     seen = std::max<uint8_t>(seen, occluded_[i] ? kHidden : kSeen);
   }
-  double hidden = 0, rest = 0;
-  for (size_t root = 0; root < seen_.size(); ++root) {
-    (seen_[root] == kHidden ? hidden : rest) += double(expected_[root]);
+  double seen = 0, hidden = 0, promising = 0, others = 0;
+  for (size_t root = 0; root < expected_.size(); ++root) {
+    const double expected = expected_[root];
+    (expected_[root] >= bar ? promising : others) += expected;
+    if (expected_[root] < bar || seen_[root] == kNotAsked) continue;
+    (seen_[root] == kSeen ? seen : hidden) += expected;
   }
-  if (!(rest > 0) || rest >= kTooFewRays * (hidden + rest)) return false;
-  for (size_t root = 0; root < seen_.size(); ++root) skipped_[root] |= seen_[root] == kHidden;
+  if (!(others > 0) || !(hidden > 0)) return false;
+  // Roots that no ray was for are taken to be like those that were asked.
+  const double rest = others + promising * seen / (seen + hidden);
+  if (rest >= kTooFewRays * (promising + others)) return false;
+
+  size_t kept = first;
+  for (size_t i = first; i < deltas_.size(); ++i) {
+    if (expected_[deltas_[i].root] < bar) continue;
+    deltas_[kept] = deltas_[i];
+    rays_[kept] = rays_[i];
+    occluded_[kept++] = occluded_[i];
+  }
+  deltas_.resize(kept);
+  rays_.resize(kept);
+  for (size_t root = 0; root < expected_.size(); ++root) settled_[root] |= expected_[root] >= bar;
   return true;
 }
 
 Received Receiver::Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
                           uint64_t seed, float* out) {
   Received work;
-  skipped_.assign(field.roots().size(), 0);
+  settled_.assign(field.roots().size(), 0);
+  deltas_.clear();
+  rays_.clear();
   for (int sharing = 0; sharing < kMostSharings; ++sharing) {
-    deltas_.clear();
-    rays_.clear();
+    const size_t first = rays_.size();
     Cut(node, field, samples, received_before, sharing == 0 ? seed : Mix(seed, uint64_t(sharing)), work);
-    if (rays_.empty()) return work;
-    work.rays += Trace(field);
-    if (!SkipHidden()) break;
+    if (rays_.size() == first) break;
+    work.rays += Trace(field, first);
+    if (!SettlePromising(first)) break;
   }
+  if (rays_.empty()) return work;
 
   const MaterialLobes& material = materials_[mesh_.patches[mesh_.node_patch[node]].material];
   const Vec3& normal = mesh_.node_normal[node];

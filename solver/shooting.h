@@ -39,6 +39,7 @@ class ShootingField {
     Rgb radiance;             ///< mean over the cell
     uint32_t cell;            ///< kNone for an emitter
     bool glossy;              ///< radiance depends on direction: read lobes
+    uint32_t face;            ///< of the scene; of a mirrored emitter, the emitter's own
     uint32_t mirror = kNone;  ///< of a mirrored emitter: index into mirrors()
   };
   const std::vector<Root>& roots() const { return roots_; }
@@ -62,16 +63,16 @@ class ShootingField {
 /// (Cohen and Wallace, Radiosity and Realistic Image Synthesis, fig. 10.15). One per thread; holds scratch.
 class Receiver {
  public:
-  /// `specular`: shadow rays pass its panes. Null: all faces are opaque.
+  /// Shadow rays pass the panes of `specular`.
   Receiver(const Mesh& mesh, const RayTracer& tracer, const std::vector<MaterialLobes>& materials,
-           const SpecularSurfaces* specular = nullptr);
+           const SpecularSurfaces& specular);
 
   /// Cuts `field` into about `samples` delta areas, more where more light is expected to come from, traces
   /// one shadow ray to each, and adds the light that leaves `node` for it to `out` (layout of NodeLobes,
   /// zeroed by the caller). `received_before`: sum over channels of the irradiance so far; cells that bring
   /// less than 1 / samples of the larger of it and this step are not cut further, so dim steps cost few rays.
   /// `seed` decides which point of a cell stands for it. If what promised nearly all of the light turns out
-  /// to be hidden, the rays are shared out again among the rest: a lamp behind a wall, however bright, takes
+  /// to be hidden, rays are shared out again among the rest: a lamp behind a wall, however bright, takes
   /// nothing from the lamp in the room.
   Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
                   uint64_t seed, float* out);
@@ -98,13 +99,15 @@ class Receiver {
   // Fresnel factor of the way over `mirror` to the image that a ray ends at, times what panes in it let
   // through; black where something else is in it.
   Rgb ByMirror(const PlanarMirror& mirror, const Ray& ray) const;
-  // Fills deltas_ and rays_ from all roots that are not in skipped_.
+  // Adds to deltas_ and rays_ from all roots that are not in settled_.
   void Cut(uint32_t node, const ShootingField& field, int samples, float received_before, uint64_t seed,
            Received& work);
-  // Fills occluded_, and takes what lies in the way off deltas_. Returns how many rays that took.
-  uint64_t Trace(const ShootingField& field);
-  // Puts roots of which nothing was seen into skipped_, if all others together had hardly any rays for it.
-  bool SkipHidden();
+  // Fills occluded_ from `first` on, and takes what lies in the way off deltas_. Returns how many rays that
+  // took.
+  uint64_t Trace(const ShootingField& field, size_t first);
+  // Looks at the rays from `first` on. If what promised most is hidden and the others had hardly any rays for
+  // it, puts the former into settled_, forgets the latter's rays, and returns true.
+  bool SettlePromising(size_t first);
   void Split(const ShootingField& field, const ShootingField::Root& root, const Vec3& point,
              const Vec3& normal, const Cell& parent);
   // All of an emitter that is seen small, as `samples` points; false if it is not seen small.
@@ -116,14 +119,14 @@ class Receiver {
   const Mesh& mesh_;
   const RayTracer& tracer_;
   const std::vector<MaterialLobes>& materials_;
-  const SpecularSurfaces* panes_;  // null: none
+  const SpecularSurfaces& specular_;
   std::vector<Cell> stack_;
   std::vector<Delta> deltas_;
   std::vector<Ray> rays_;
   std::vector<uint8_t> occluded_;
   std::vector<float> basis_;
   std::vector<float> expected_;          // per root
-  std::vector<uint8_t> skipped_, seen_;  // per root; the latter for SkipHidden
+  std::vector<uint8_t> settled_, seen_;  // per root; the latter for SettlePromising
   std::vector<float> lifts_;             // per patch
   IncidentMoments moments_;
 };

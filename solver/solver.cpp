@@ -537,7 +537,7 @@ class ProgressiveSolver {
 
   bool GatherShot(int step, const ShootingField& field, int samples, const std::vector<uint32_t>& nodes) {
     tbb::enumerable_thread_specific<Receiver> receivers(
-        [&] { return Receiver(s_.mesh, tracer_, materials_, &specular_); });
+        [&] { return Receiver(s_.mesh, tracer_, materials_, specular_); });
     return ForEach(nodes, step, [&](uint32_t n, float* out) {
       return receivers.local().Gather(n, field, samples, s_.received.empty() ? 0.0f : s_.received[n],
                                       Mix(Mix(s_.options.seed, 0x5ee9), uint64_t(step)), out);
