@@ -82,13 +82,6 @@ void RequireExposure(const std::string& flag, float stops) {
   if (!(std::abs(stops) <= 100)) Refuse(flag, std::to_string(stops), "a number of stops from -100 to 100");
 }
 
-std::string Extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 void RequireExtension(const std::string& flag, const std::string& path,
                       std::initializer_list<const char*> endings) {
   const std::string extension = Extension(path);

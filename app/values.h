@@ -5,6 +5,7 @@
 
 #include "render/tone.h"
 #include "scene/scene.h"
+#include "scene/uri.h"
 
 namespace lobe {
 
@@ -34,9 +35,6 @@ PixelRect ParseRect(const std::string& flag, const std::string& text);
 ToneCurve ParseTone(const std::string& flag, const std::string& text);
 /// Stops, within +-100: beyond, every picture is black or white.
 void RequireExposure(const std::string& flag, float stops);
-
-/// The name's ending, small letters, dot included: ".exr".
-std::string Extension(const std::string& path);
 /// Output files must end in one of `endings`: what is written follows from it.
 void RequireExtension(const std::string& flag, const std::string& path,
                       std::initializer_list<const char*> endings);

@@ -70,7 +70,12 @@ Measured BrdfExtensionReader::ReadMeasured(const GltfJson& brdf) {
               ", expected one of them for measured data");
   }
   const bool by_uri = brdf.Has("uri");
-  const std::string key = by_uri ? "uri " + brdf.String("uri") : "values " + Shown(brdf.value().at("values"));
+  // All that the data follow from.
+  json source;
+  for (const char* member : {"uri", "name", "coordinates", "axes", "values"}) {
+    source.push_back(brdf.Has(member) ? brdf.value().at(member) : json());
+  }
+  const std::string key = source.dump(-1, ' ', true, json::error_handler_t::replace);
   auto found = read_.find(key);
   if (found == read_.end()) {
     found = read_.emplace(key, by_uri ? ReadUri(brdf) : ReadAccessors(brdf)).first;

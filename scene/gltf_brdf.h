@@ -33,7 +33,7 @@ class BrdfExtensionReader {
 
   const GltfFile& file_;
   std::vector<std::string>* warnings_;
-  std::map<std::string, Measured> read_;  // by URI or accessor
+  std::map<std::string, Measured> read_;  // by all that they follow from
 };
 
 /// Measured data as members of the extension. With a `writer` the data goes into its accessors, once however

@@ -11,11 +11,18 @@
 #include <utility>
 #include <vector>
 
+#include "scene/gltf_json.h"
 #include "scene/input_error.h"
 #include "scene/measured_file.h"
 
 namespace lobe {
 namespace {
+
+// Escaped and shortened as JSON strings are in messages, for what is no text at all.
+std::string Printable(std::string_view text) {
+  const std::string shown = Shown(nlohmann::json(std::string(text)));
+  return shown.substr(1, shown.size() - (shown.ends_with('"') ? 2 : 1));
+}
 
 constexpr const char* kColumns = "theta_i, theta_o, dphi and f_r, or red, green, blue";
 constexpr size_t kMostBytes = size_t{1} << 28;
@@ -117,8 +124,10 @@ class Table {
     constexpr double kMost[3] = {90, 90, 180};
     for (size_t i = 0; i < fields.size(); ++i) {
       double number = 0;
-      const std::string shown(fields[i].substr(0, 40));
-      if (!Number(fields[i], &number)) Fail(line, "'" + shown + "' found, expected a number");
+      if (!Number(fields[i], &number)) {
+        Fail(line, "'" + Printable(fields[i]) + "' found, expected a number");
+      }
+      const std::string shown(fields[i]);
       if (i < 3) {
         if (!(number >= 0 && number <= kMost[i])) {
           Fail(line, std::string(kNames[i]) + " is " + shown + ", expected 0 to " +

@@ -9,6 +9,7 @@
 #include "scene/goniometer_file.h"
 #include "scene/input_error.h"
 #include "scene/merl_file.h"
+#include "scene/uri.h"
 
 namespace lobe {
 
@@ -33,7 +34,7 @@ std::vector<uint8_t> ReadBytes(const std::string& path, size_t most) {
 }
 
 Measured ReadMeasuredFile(const std::string& path) {
-  return path.ends_with(".binary") ? ReadMerlFile(path) : ReadGoniometerFile(path);
+  return Extension(path) == ".binary" ? ReadMerlFile(path) : ReadGoniometerFile(path);
 }
 
 }  // namespace lobe

@@ -1,5 +1,7 @@
 #include "scene/uri.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 
@@ -21,6 +23,13 @@ std::string PercentDecoded(const std::string& uri) {
 
 std::string FileOfUri(const std::string& document_path, const std::string& uri) {
   return (std::filesystem::path(document_path).parent_path() / PercentDecoded(uri)).string();
+}
+
+std::string Extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 }  // namespace lobe

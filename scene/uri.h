@@ -10,4 +10,7 @@ std::string PercentDecoded(const std::string& uri);
 /// The file a relative URI of the document at `document_path` means: beside it.
 std::string FileOfUri(const std::string& document_path, const std::string& uri);
 
+/// Of a path, in lower case, with its dot; "" if there is none.
+std::string Extension(const std::string& path);
+
 }  // namespace lobe
