@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -31,24 +30,6 @@ struct BrdfFlags {
   std::optional<std::string> output;
 };
 
-/// Lobes and how long they took to make.
-struct BuiltLobes {
-  MaterialLobes lobes;
-  double seconds;
-
-  BuiltLobes(const Reflectance& r, const LobeOptions& options)
-      : BuiltLobes(r, options, std::chrono::steady_clock::now()) {}
-
- private:
-  BuiltLobes(const Reflectance& r, const LobeOptions& options, std::chrono::steady_clock::time_point start)
-      : lobes(Build(r, options)),
-        seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()) {}
-  static MaterialLobes Build(const Reflectance& r, const LobeOptions& options) {
-    TableCache cache;
-    return {r, options, cache};
-  }
-};
-
 struct DegreeRow {
   int l_max;
   LobeAccuracy accuracy;
@@ -71,19 +52,21 @@ struct BrdfStudy {
 DegreeRow AtDegree(const Reflectance& r, const AccuracyMeter& meter, int l_max) {
   LobeOptions options;
   options.force_l_max = l_max;
-  const BuiltLobes built(r, options);
+  TableCache cache;
+  const BuiltLobes built = BuildLobes(r, options, cache);
   return {l_max, meter.Measure(built.lobes), built.lobes.spline().knots(), built.seconds,
           built.lobes.lobe_bytes()};
 }
 
 BrdfStudy Study(const NamedReflectance& named, const LobeOptions& options) {
   const Reflectance& r = named.reflectance;
-  BuiltLobes built(r, options);
+  TableCache cache;
+  BuiltLobes built = BuildLobes(r, options, cache);
   if (built.lobes.max_degree() < 0) {
     throw InputError(named.name + ": has no lobes, being black, an ideal mirror or clear glass (" +
                      Describe(r) + ")");
   }
-  const BrdfPart part = built.lobes.gloss.l_max >= 0 ? BrdfPart::kGloss : BrdfPart::kBase;
+  const BrdfPart part = JudgedPart(built.lobes);
   const AccuracyMeter meter(r, part);
   const LobeAccuracy accuracy = meter.Measure(built.lobes);
   BrdfStudy out{named.name, Describe(r), options, part, std::move(built), accuracy, {}, {}, {}};

@@ -21,8 +21,7 @@ std::string CostText(const std::vector<MaterialRow>& rows) {
 ExitCode ShowScene(const InfoFlags& flags, Console& console) {
   const Scene scene = ReadGltfScene(flags.file);
   for (const std::string& warning : scene.warnings) console.Warn(warning);
-  auto rows = MaterialRows(scene, flags.lobes.Options());
-  MeasureLobes(scene, flags.lobes.Options(), &rows);
+  const auto rows = MaterialRows(scene, flags.lobes.Options());
 
   nlohmann::json json = {{"type", "scene"},
                          {"path", flags.file},

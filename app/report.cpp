@@ -53,7 +53,23 @@ Rgb EmittedPower(const Scene& scene) {
   return power;
 }
 
+// None of diffuse materials.
+std::optional<LobeCost> CostOf(const BuiltLobes& built) {
+  const MaterialLobes& lobes = built.lobes;
+  if (lobes.diffuse()) return std::nullopt;
+  const BrdfPart part = JudgedPart(lobes);
+  return LobeCost{part == BrdfPart::kGloss ? lobes.gloss.error : lobes.base.error, NegativePart(lobes, part),
+                  lobes.spline().knots(), lobes.lobe_bytes(), built.seconds};
+}
+
 }  // namespace
+
+BuiltLobes BuildLobes(const Reflectance& reflectance, const LobeOptions& options, TableCache& cache) {
+  const auto start = std::chrono::steady_clock::now();
+  MaterialLobes lobes(reflectance, options, cache);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return {std::move(lobes), taken.count()};
+}
 
 json ToJson(const Rgb& c) { return {c[0], c[1], c[2]}; }
 json ToJson(const Vec3& v) { return {v[0], v[1], v[2]}; }
@@ -62,16 +78,10 @@ std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& opt
   TableCache cache;
   std::vector<MaterialRow> rows;
   for (const Material& m : scene.materials) {
-    const MaterialLobes lobes(m.reflectance, options, cache);
-    rows.push_back({m.name,
-                    Describe(m.reflectance),
-                    lobes.kind(),
-                    lobes.transmits(),
-                    lobes.base.l_max,
-                    lobes.gloss.l_max,
-                    lobes.gloss.error.total,
-                    {},
-                    m.emission});
+    const BuiltLobes built = BuildLobes(m.reflectance, options, cache);
+    rows.push_back({m.name, Describe(m.reflectance), built.lobes.kind(), built.lobes.transmits(),
+                    built.lobes.base.l_max, built.lobes.gloss.l_max, built.lobes.gloss.error.total,
+                    CostOf(built), m.emission});
   }
   return rows;
 }
@@ -101,14 +111,7 @@ std::vector<MaterialRow> MaterialRows(const Solution& solution) {
 void MeasureLobes(const Scene& scene, const LobeOptions& options, std::vector<MaterialRow>* rows) {
   TableCache cache;
   for (size_t i = 0; i < scene.materials.size(); ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    const MaterialLobes lobes(scene.materials[i].reflectance, options, cache);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    if (lobes.diffuse()) continue;
-    const bool gloss = lobes.gloss.l_max >= 0;
-    (*rows)[i].cost = {gloss ? lobes.gloss.error : lobes.base.error,
-                       NegativePart(lobes, gloss ? BrdfPart::kGloss : BrdfPart::kBase),
-                       lobes.spline().knots(), lobes.lobe_bytes(), seconds.count()};
+    (*rows)[i].cost = CostOf(BuildLobes(scene.materials[i].reflectance, options, cache));
   }
 }
 

@@ -12,6 +12,13 @@ namespace lobe {
 
 /// Words and JSON for what `solve` and `info` both say.
 
+/// Lobes, and the wall time they took to make.
+struct BuiltLobes {
+  MaterialLobes lobes;
+  double seconds;
+};
+BuiltLobes BuildLobes(const Reflectance& reflectance, const LobeOptions& options, TableCache& cache);
+
 /// What a material's lobes lose, and take; of the gloss, or of the base if there is no gloss.
 struct LobeCost {
   LobeError error;
@@ -28,7 +35,7 @@ struct MaterialRow {
   bool translucent = false;               ///< light goes through to the other side
   int l_max_base = -1, l_max_gloss = -1;  ///< -1: no such part
   double lobe_error = 0;                  ///< flux-weighted, fraction
-  /// What only MeasureLobes says.
+  /// Of a solution only MeasureLobes says it.
   std::optional<LobeCost> cost;
   Rgb emission = Rgb::Zero();
 };
@@ -36,7 +43,7 @@ struct MaterialRow {
 std::vector<MaterialRow> MaterialRows(const Scene& scene, const LobeOptions& options);
 /// From what was solved; a material without nodes has no degrees.
 std::vector<MaterialRow> MaterialRows(const Solution& solution);
-/// Adds the cost of each material that has lobes, by making them.
+/// Adds the cost of each material that has lobes, by making them once more.
 void MeasureLobes(const Scene& scene, const LobeOptions& options, std::vector<MaterialRow>* rows);
 std::string MaterialText(const std::vector<MaterialRow>& rows);
 /// Costs alone; empty if no material has any.

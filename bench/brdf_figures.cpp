@@ -51,10 +51,6 @@ double BuildMilliseconds(const Reflectance& r, const LobeOptions& options) {
   return Median(milliseconds);
 }
 
-BrdfPart JudgedPart(const MaterialLobes& lobes) {
-  return lobes.gloss.l_max >= 0 ? BrdfPart::kGloss : BrdfPart::kBase;
-}
-
 void PrintRow(const Reflectance& r, const AccuracyMeter& meter, BrdfPart part, const LobeOptions& options) {
   TableCache cache;
   const MaterialLobes lobes(r, options, cache);

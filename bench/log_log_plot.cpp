@@ -71,7 +71,7 @@ void DrawMark(Drawing* drawing, const Point& centre, double radius, const Drawin
   drawing->Add(std::move(disc));
 }
 
-void DrawGrid(Drawing* drawing, const PlotPanel& panel, const Point& corner, const Axis& x, const Axis& y) {
+void DrawGrid(Drawing* drawing, const LogLogPanel& panel, const Point& corner, const Axis& x, const Axis& y) {
   const double bottom = corner.y() + kPanelHeight, right = corner.x() + kPanelWidth;
   for (const Tick& t : Ticks(x)) {
     const double at = corner.x() + kPanelWidth * x.At(t.value);
@@ -115,7 +115,7 @@ void DrawLegend(Drawing* drawing, const std::vector<PlotSeries>& series, const P
 
 }  // namespace
 
-Drawing DrawLogLogPanels(const std::string& title, const std::vector<PlotPanel>& panels, int columns) {
+Drawing DrawLogLogPanels(const std::string& title, const std::vector<LogLogPanel>& panels, int columns) {
   const int rows = (int(panels.size()) + columns - 1) / columns;
   std::vector<Axis> x(columns), y(rows);
   for (size_t i = 0; i < panels.size(); ++i) {

@@ -18,7 +18,7 @@ struct PlotSeries {
 
 /// Axes of one plot, and what is in it. Points that are not positive are left out: logarithms of them are
 /// not.
-struct PlotPanel {
+struct LogLogPanel {
   std::string title, x_label, y_label;
   std::vector<PlotSeries> series;
 };
@@ -26,6 +26,6 @@ struct PlotPanel {
 /// Panels side by side and below each other, `columns` in a row, with a legend of the first one's series on
 /// the right. Panels of one column share their x axis' range, panels of one row their y axis', so that they
 /// can be compared at sight.
-Drawing DrawLogLogPanels(const std::string& title, const std::vector<PlotPanel>& panels, int columns);
+Drawing DrawLogLogPanels(const std::string& title, const std::vector<LogLogPanel>& panels, int columns);
 
 }  // namespace lobe

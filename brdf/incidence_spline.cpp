@@ -22,9 +22,9 @@ void BSplineWeights(Real u, Real* weight) {
 }  // namespace
 
 IncidenceSpline::IncidenceSpline(int knots) : knots_(knots) {
-  if (knots < 5) {
-    throw std::invalid_argument("IncidenceSpline: " + std::to_string(knots) +
-                                " knots given, at least 5 expected");
+  if (knots < kFewestKnots) {
+    throw std::invalid_argument("IncidenceSpline: " + std::to_string(knots) + " knots given, at least " +
+                                std::to_string(kFewestKnots) + " expected");
   }
   const int n = knots_;
   for (const bool odd : {false, true}) {

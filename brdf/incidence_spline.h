@@ -19,7 +19,8 @@ namespace lobe {
 /// centred on knot j, the last one lies past the end, and the one before 0 is the mirror of bin 1.
 class IncidenceSpline {
  public:
-  /// At least 5 knots; throws std::invalid_argument otherwise.
+  static constexpr int kFewestKnots = 5;
+  /// At least kFewestKnots; throws std::invalid_argument otherwise.
   explicit IncidenceSpline(int knots);
 
   int knots() const { return knots_; }

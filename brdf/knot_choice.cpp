@@ -4,13 +4,10 @@
 #include <cmath>
 
 namespace lobe {
-namespace {
 
-constexpr int kLeastKnots = 5;  // of an IncidenceSpline
-
-}  // namespace
-
-int KnotChoice::MostMeasured() const { return std::max(kLeastKnots, 1 + 3 * (table_.knots() - 1) / 4); }
+int KnotChoice::MostMeasured() const {
+  return std::max(IncidenceSpline::kFewestKnots, 1 + 3 * (table_.knots() - 1) / 4);
+}
 
 Eigen::MatrixXd KnotChoice::ToKnots(const IncidenceSpline& spline, bool odd) const {
   if (spline.knots() == table_.knots()) return Eigen::MatrixXd::Identity(table_.knots(), table_.knots());
@@ -59,7 +56,7 @@ LobeError KnotChoice::Measure(const ScalarTable& table, int degree, int knots) c
 
 int KnotChoice::Fewest(const ScalarTable& table, int degree, double tolerance) const {
   const auto suffice = [&](int knots) { return Measure(table, degree, knots).between <= tolerance; };
-  int low = kLeastKnots, high = MostMeasured();
+  int low = IncidenceSpline::kFewestKnots, high = MostMeasured();
   if (!suffice(high)) return table.knots;
   while (low < high) {
     const int middle = (low + high) / 2;

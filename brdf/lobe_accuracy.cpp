@@ -54,12 +54,6 @@ void AddSums(const Points& points, const Eigen::ArrayXd& value, int l_max, Eigen
 
 }  // namespace
 
-double ExactLobe::Truncated(int l) const {
-  if (!(norm2 > 0)) return 0;
-  const int count = std::min(CoefficientCount(l), int(zernike.size()));
-  return std::sqrt(std::max(0.0, norm2 - zernike.head(count).squaredNorm()) / norm2);
-}
-
 ExactLobe ProjectExactly(const Reflectance& r, BrdfPart part, double cos_theta_i, int l_max) {
   const double cosine = std::clamp(cos_theta_i, 1e-7, 1.0);
   ExactLobe out;
@@ -174,19 +168,6 @@ LobeAccuracy AccuracyMeter::Measure(const MaterialLobes& lobes) const {
   if (!(sum > 0)) return {};
   for (double* mean : {&out.error.total, &out.error.truncated, &out.error.between, &out.negative})
     *mean /= sum;
-  return out;
-}
-
-std::vector<double> AccuracyMeter::TruncatedByDegree() const {
-  std::vector<double> out;
-  for (int l = 0; l <= kMostDegree; ++l) {
-    double sum = 0, weights = 0;
-    for (int i = 0; i < kAngles; ++i) {
-      sum += weight_[i] * exact_[i].Truncated(l);
-      weights += weight_[i];
-    }
-    out.push_back(weights > 0 ? sum / weights : 0);
-  }
   return out;
 }
 

@@ -13,14 +13,16 @@ namespace lobe {
 /// luminance of the channels.
 
 enum class BrdfPart { kBase, kGloss, kWhole };
+/// The part whose lobes a material is judged by: its gloss, or its base if it has none.
+inline BrdfPart JudgedPart(const MaterialLobes& lobes) {
+  return lobes.gloss.l_max >= 0 ? BrdfPart::kGloss : BrdfPart::kBase;
+}
 
 /// A BRDF at one incident angle, azimuth 0: its exact projection up to a high degree.
 struct ExactLobe {
   double albedo = 0;
   double norm2 = 0;         ///< integral of f^2 cos
   Eigen::VectorXd zernike;  ///< over Z (sh/zernike.h), index as of H; sines are 0
-  /// Relative cos-weighted L2 error of the projection onto degree `l`.
-  double Truncated(int l) const;
 };
 ExactLobe ProjectExactly(const Reflectance& r, BrdfPart part, double cos_theta_i, int l_max);
 
@@ -56,8 +58,6 @@ class AccuracyMeter {
   AccuracyMeter(const Reflectance& r, BrdfPart part);
 
   LobeAccuracy Measure(const MaterialLobes& lobes) const;
-  /// Average by flux of what the exact projection onto each degree 0..32 leaves out.
-  std::vector<double> TruncatedByDegree() const;
   static constexpr int kMostDegree = 32;
 
  private:

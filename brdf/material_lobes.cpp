@@ -21,7 +21,6 @@ constexpr double kKnotShare = 0.1;
 const double kTruncationShare = std::sqrt(1 - kKnotShare * kKnotShare);
 // Lobes that lose less than this by truncation need no knots to match.
 constexpr double kLeastError = 0.002;
-constexpr int kFewestKnots = 5;  // that a spline has
 
 std::string TableKey(const std::string& recipe, int l_max) { return recipe + " to " + std::to_string(l_max); }
 
@@ -39,33 +38,36 @@ std::vector<float> FluxRest(const IncidenceSpline& spline, const Eigen::VectorXd
   return rest;
 }
 
-// One channel of a part from its table, which is read up to part.l_max.
-void SetChannel(PartLobes& part, int channel, const IncidenceSpline& spline, const ScalarTable& table) {
+// A part from the tables of its channels, which are read up to part.l_max.
+void SetChannels(PartLobes& part, const IncidenceSpline& spline, const std::vector<ScalarTable>& channels) {
   const int l_max = part.l_max;
   const ZernikeTransform transform(l_max);
-  const KnotChoice knots(table.knots);
+  const KnotChoice knots(channels[0].knots);
   const Eigen::MatrixXd to_knots[2] = {knots.ToKnots(spline, false), knots.ToKnots(spline, true)};
-  auto& control = part.control[channel];
-  control.assign(size_t(spline.bins()) * part.RowCount(), 0.0f);
-  for (int m = 0; m <= l_max; ++m) {
-    const int size = (l_max - m) / 2 + 1;
-    Eigen::MatrixXd values(table.knots, size);
-    for (int n = 0; n < size; ++n) {
-      values.col(n) = table.zernike.row(ScalarTable::RowIndex(m + 2 * n, m)).transpose();
-    }
-    const Eigen::MatrixXd at_knots = to_knots[m % 2] * values;
-    const Eigen::MatrixXd bins =
-        spline.ControlValues(at_knots * transform.ToHemisphereBlock(m).transpose(), m % 2 == 1);
-    for (int l = 0; l < size; ++l) {
-      for (int bin = 0; bin < spline.bins(); ++bin) {
-        control[size_t(bin) * part.RowCount() + part.Row(m + 2 * l, m)] = float(bins(bin, l));
+  for (int channel = 0; channel < 3; ++channel) {
+    const ScalarTable& table = channels[channel];
+    auto& control = part.control[channel];
+    control.assign(size_t(spline.bins()) * part.RowCount(), 0.0f);
+    for (int m = 0; m <= l_max; ++m) {
+      const int size = (l_max - m) / 2 + 1;
+      Eigen::MatrixXd values(table.knots, size);
+      for (int n = 0; n < size; ++n) {
+        values.col(n) = table.zernike.row(ScalarTable::RowIndex(m + 2 * n, m)).transpose();
+      }
+      const Eigen::MatrixXd at_knots = to_knots[m % 2] * values;
+      const Eigen::MatrixXd bins =
+          spline.ControlValues(at_knots * transform.ToHemisphereBlock(m).transpose(), m % 2 == 1);
+      for (int l = 0; l < size; ++l) {
+        for (int bin = 0; bin < spline.bins(); ++bin) {
+          control[size_t(bin) * part.RowCount() + part.Row(m + 2 * l, m)] = float(bins(bin, l));
+        }
       }
     }
+    const Eigen::VectorXd flux = std::sqrt(std::numbers::pi) * to_knots[0] * table.zernike.row(0).transpose();
+    part.flux_rest[channel] = FluxRest(spline, flux, table.albedo);
+    part.albedo[channel].resize(table.albedo.size());
+    for (int i = 0; i < table.albedo.size(); ++i) part.albedo[channel][i] = float(table.albedo[i]);
   }
-  const Eigen::VectorXd flux = std::sqrt(std::numbers::pi) * to_knots[0] * table.zernike.row(0).transpose();
-  part.flux_rest[channel] = FluxRest(spline, flux, table.albedo);
-  part.albedo[channel].resize(table.albedo.size());
-  for (int i = 0; i < table.albedo.size(); ++i) part.albedo[channel][i] = float(table.albedo[i]);
 }
 
 Rgb LambertPart(PartLobes& part, const Rgb& albedo) {
@@ -153,7 +155,8 @@ MaterialLobes::MaterialLobes(const Reflectance& reflectance, const LobeOptions& 
   if (const auto recipe = GlossRecipe(reflectance)) gloss_plan = PlanGloss(*recipe, cap, options, cache);
   base_plan.ChooseKnots(kBaseError);
   gloss_plan.ChooseKnots(options.error);
-  spline_ = std::make_shared<IncidenceSpline>(std::max({kFewestKnots, base_plan.knots, gloss_plan.knots}));
+  spline_ = std::make_shared<IncidenceSpline>(
+      std::max({IncidenceSpline::kFewestKnots, base_plan.knots, gloss_plan.knots}));
   base_plan.Fill(base, *spline_);
   gloss_plan.Fill(gloss, *spline_);
 
@@ -184,7 +187,7 @@ void MaterialLobes::Plan::Fill(PartLobes& part, const IncidenceSpline& spline) c
     const LobeError error = KnotChoice(table.knots).Measure(table, l_max, spline.knots());
     if (error.total >= part.error.total) part.error = error;
   }
-  for (int c = 0; c < 3; ++c) SetChannel(part, c, spline, channels[c]);
+  SetChannels(part, spline, channels);
 }
 
 // The base of glTF: c_diff / pi (1 - F), F = f0 + (f90 - f0)(1 - V.H)^5 (of the largest channel with

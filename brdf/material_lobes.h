@@ -93,6 +93,8 @@ class MaterialLobes {
   Rgb Albedo(float cos_theta_i) const;
   /// Ideal glass (IsGlass), with or without a coat.
   bool glass() const { return glass_; }
+  /// An opaque ideal mirror.
+  bool mirror() const { return kind_ == GlossKind::kMirror && !glass_; }
   /// Some light goes on as a ray: by an ideal mirror coat, or through glass.
   bool sends_on() const { return glass_ || kind_ == GlossKind::kMirror; }
   /// Fraction that does, from outside in air; 0 unless sends_on().

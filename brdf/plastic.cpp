@@ -34,7 +34,7 @@ Plastic::Plastic(const Rgb& albedo, float ior, float roughness)
       [alpha](const Vec3d& wi, const Vec3d& wo) {
         return GgxD((wi + wo).normalized().z(), alpha) * GgxV(wi.z(), wo.z(), alpha);
       },
-      0, HalfVectorRule{.width = alpha}, 5);
+      0, HalfVectorRule{.width = alpha}, IncidenceSpline::kFewestKnots);
   const Eigen::VectorXd reflected = coat.Mix(F0(), 1 - F0()).albedo;
   std::vector<float> through;
   for (const double e : reflected) through.push_back(float(std::clamp(1 - e, 0.0, 1.0)));

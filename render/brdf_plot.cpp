@@ -11,7 +11,6 @@ namespace lobe {
 namespace {
 
 using Colour = Drawing::Colour;
-using Anchor = Drawing::Anchor;
 using Points = PlotPanel::Points;
 
 constexpr int kWidth = 1120, kHeight = 620;
