@@ -30,9 +30,9 @@ constexpr float kGlossyCaution = 4.0f;
 constexpr float kSeenSmall = 0.7f;
 constexpr float kPerThreshold = 1.4f;
 
-// Roots that promise less than this share of what the most promising one does are asked anew, with as many
-// rays as all had, if what promises more is hidden but for less than this share of all. (chosen) What
-// promises more keeps its rays, and whether the others are asked anew does not depend on what they saw: so no
+// If what promises most, down to some tenth part of a tenth part ..., is hidden but for less than this share
+// of all, then what promises less had too few rays and is asked anew with as many as all had. (chosen)
+// Whether it is does not depend on what its own rays saw, and what promises more keeps its rays: so no
 // estimate is biased by it. So many times at most, for lamps ever dimmer.
 constexpr double kTooFewRays = 0.1;
 constexpr int kMostSharings = 16;
@@ -394,25 +394,28 @@ uint64_t Receiver::Trace(const ShootingField& field, size_t first) {
 }
 
 bool Receiver::SettlePromising(size_t first) {
-  // What is settled already is expected to bring nothing more: Cut leaves it out.
-  const float bar = kTooFewRays * *std::max_element(expected_.begin(), expected_.end());
   enum : uint8_t { kNotAsked, kHidden, kSeen };
   seen_.assign(expected_.size(), kNotAsked);
   for (size_t i = first; i < deltas_.size(); ++i) {
     uint8_t& seen = seen_[deltas_[i].root];
     seen = std::max<uint8_t>(seen, occluded_[i] ? kHidden : kSeen);
   }
-  double seen = 0, hidden = 0, promising = 0, others = 0;
-  for (size_t root = 0; root < expected_.size(); ++root) {
-    const double expected = expected_[root];
-    (expected_[root] >= bar ? promising : others) += expected;
-    if (expected_[root] < bar || seen_[root] == kNotAsked) continue;
-    (seen_[root] == kSeen ? seen : hidden) += expected;
+  // What is settled already is expected to bring nothing more: Cut leaves it out.
+  float bar = *std::max_element(expected_.begin(), expected_.end());
+  for (;;) {
+    bar *= float(kTooFewRays);
+    double seen = 0, hidden = 0, promising = 0, others = 0;
+    for (size_t root = 0; root < expected_.size(); ++root) {
+      const double expected = expected_[root];
+      (expected_[root] >= bar ? promising : others) += expected;
+      if (expected_[root] < bar || seen_[root] == kNotAsked) continue;
+      (seen_[root] == kSeen ? seen : hidden) += expected;
+    }
+    const double enough = kTooFewRays * (promising + others);
+    if (!(others > 0) || seen >= enough) return false;
+    // Roots that no ray was for are taken to be like those that were asked.
+    if (hidden > 0 && others + promising * seen / (seen + hidden) < enough) break;
   }
-  if (!(others > 0) || !(hidden > 0)) return false;
-  // Roots that no ray was for are taken to be like those that were asked.
-  const double rest = others + promising * seen / (seen + hidden);
-  if (rest >= kTooFewRays * (promising + others)) return false;
 
   size_t kept = first;
   for (size_t i = first; i < deltas_.size(); ++i) {
