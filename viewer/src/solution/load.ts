@@ -1,0 +1,108 @@
+import { GLTFLoader, type GLTF, type GLTFLoaderPlugin, type GLTFParser } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { Problem } from './problem';
+import { kExtension, readSolution, type Document, type Parser } from './read';
+import type { Solution } from './solution';
+
+/**
+ * The plugin for three's GLTFLoader: `gltf.userData.lobe` becomes a Solution. Plain three.js pages may use it too:
+ *
+ *     loader.register((parser) => new DirectionalRadiancePlugin(parser, 'solution.glb'));
+ */
+export class DirectionalRadiancePlugin implements GLTFLoaderPlugin {
+  readonly name = kExtension;
+  constructor(private readonly parser: GLTFParser, private readonly title: string) {}
+
+  async afterRoot(gltf: GLTF): Promise<void> {
+    gltf.userData.lobe = await readSolution(this.parser as unknown as Parser, this.title);
+  }
+}
+
+/** What `lobe view` and `lobe export` put beside the page. */
+export interface View {
+  solution: string;
+  title: string;
+}
+
+async function fetchOrSay(address: string): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(address);
+  } catch {
+    throw new Problem(`${address} cannot be fetched: does the server still run?`);
+  }
+  if (!response.ok) throw new Problem(`${address} cannot be fetched: the server says ${response.status}`);
+  return response;
+}
+
+/** Which solution to show: `?solution=ADDRESS`, or what view.json beside the page says. */
+export async function findView(search: string): Promise<View> {
+  const asked = new URLSearchParams(search).get('solution');
+  if (asked) return { solution: asked, title: asked.split('/').pop() ?? asked };
+  const response = await fetchOrSay('view.json');
+  let view: Partial<View>;
+  try {
+    view = (await response.json()) as Partial<View>;
+  } catch {
+    throw new Problem('view.json is not JSON; `lobe export` writes a good one');
+  }
+  if (typeof view.solution !== 'string') throw new Problem('view.json names no "solution"');
+  return { solution: view.solution, title: typeof view.title === 'string' ? view.title : view.solution };
+}
+
+/** Fetches a file, telling which share of it is here (0..1; undefined: unknown). Names in .gz are unpacked. */
+async function fetchBytes(address: string, onProgress: (share?: number) => void): Promise<ArrayBuffer> {
+  const response = await fetchOrSay(address);
+  const total = Number(response.headers.get('Content-Length')) || undefined;
+  let here = 0;
+  const counted = response.body!.pipeThrough(
+    new TransformStream<Uint8Array, Uint8Array>({
+      transform(chunk, controller) {
+        here += chunk.byteLength;
+        onProgress(total && Math.min(1, here / total));
+        controller.enqueue(chunk);
+      },
+    }),
+  );
+  const zipped = new URL(address, location.href).pathname.endsWith('.gz');
+  const bytes = zipped ? counted.pipeThrough(new DecompressionStream('gzip') as never) : counted;
+  try {
+    return await new Response(bytes).arrayBuffer();
+  } catch {
+    throw new Problem(zipped ? 'is no whole gzip file' : 'broke off while it was fetched');
+  }
+}
+
+const kGlbMagic = 0x46546c67;
+
+/** A .glb's own header, so that what is damaged is named before anything tries to read it. */
+function checkContainer(bytes: ArrayBuffer): void {
+  const view = new DataView(bytes);
+  if (bytes.byteLength === 0) throw new Problem('is empty');
+  if (bytes.byteLength < 20 || view.getUint32(0, true) !== kGlbMagic) {
+    // Perhaps JSON; then the loader says what it thinks of it.
+    if (view.getUint8(0) === '{'.charCodeAt(0)) return;
+    throw new Problem('is neither a .glb nor a .gltf file');
+  }
+  const length = view.getUint32(8, true);
+  if (length !== bytes.byteLength) {
+    throw new Problem(`has ${bytes.byteLength} bytes, and its header says ${length}: it is damaged or not whole`);
+  }
+}
+
+/** Throws Problem, with the file's title in front. */
+export async function loadSolution(view: View, onProgress: (share?: number) => void): Promise<Solution> {
+  try {
+    const bytes = await fetchBytes(view.solution, onProgress);
+    checkContainer(bytes);
+    const loader = new GLTFLoader();
+    loader.register((parser) => new DirectionalRadiancePlugin(parser, view.title));
+    const folder = new URL('.', new URL(view.solution, location.href)).href;
+    const gltf = await loader.parseAsync(bytes, folder);
+    return gltf.userData.lobe as Solution;
+  } catch (error) {
+    const why = error instanceof Problem ? error.message : `cannot be read: ${(error as Error).message ?? error}`;
+    throw new Problem(`${view.title}: ${why}`);
+  }
+}
+
+export type { Document };

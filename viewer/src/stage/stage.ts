@@ -1,0 +1,114 @@
+/**
+ * The scene on the canvas: camera, settings, what is drawn when. The panels know it by this class alone; how lobes get
+ * to the screen is draw/'s.
+ */
+import { Group, PerspectiveCamera, Ray, Vector2, Vector3, Raycaster } from 'three';
+import type { Solution } from '../solution/solution';
+import { Picture } from '../draw/picture';
+import { pickAlong, type Pick } from './pick';
+import { defaultSettings, type Settings } from './settings';
+
+/** Where the eye is, what it turns about. */
+export interface Pose {
+  eye: Vector3;
+  target: Vector3;
+  up: Vector3;
+  /** Vertical, degrees. */
+  fov: number;
+}
+
+export interface StageStats {
+  frames: number;
+  /** Of the last frame, milliseconds, waiting for the GPU only where the browser does. */
+  frameMs: number;
+  /** Bytes sent to the GPU as textures and buffers since the page was opened. */
+  uploadedBytes: number;
+}
+
+export class Stage {
+  readonly camera = new PerspectiveCamera(50, 1, 0.01, 1000);
+  /** What the eye turns about, and what the wheel goes to. */
+  readonly target = new Vector3();
+  /** Drawn last, in display colours, with the scene's depth: lobes, markers. */
+  readonly overlay = new Group();
+  private readonly picture: Picture;
+  private current: Settings = { ...defaultSettings };
+  private asked = false;
+  private readonly listeners = new Set<() => void>();
+
+  constructor(readonly canvas: HTMLCanvasElement, readonly solution: Solution) {
+    this.picture = new Picture(canvas, solution);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+  }
+
+  get settings(): Readonly<Settings> {
+    return this.current;
+  }
+
+  set(change: Partial<Settings>): void {
+    this.current = { ...this.current, ...change };
+    this.changed();
+  }
+
+  get pose(): Pose {
+    return { eye: this.camera.position.clone(), target: this.target.clone(), up: this.camera.up.clone(), fov: this.camera.fov };
+  }
+
+  setPose(pose: Partial<Pose>): void {
+    if (pose.eye) this.camera.position.copy(pose.eye);
+    if (pose.target) this.target.copy(pose.target);
+    if (pose.up) this.camera.up.copy(pose.up);
+    if (pose.fov) this.camera.fov = pose.fov;
+    this.camera.lookAt(this.target);
+    this.camera.updateProjectionMatrix();
+    this.changed();
+  }
+
+  /** Called after every change of pose, settings or size; returns how to stop that. */
+  onChange(listener: () => void): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  /** Draws once, soon. Nothing is drawn while nothing changes. */
+  redraw(): void {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.drawNow();
+    });
+  }
+
+  /** Draws at once, for screenshots and measurements. */
+  drawNow(): void {
+    this.picture.draw(this.camera, this.current, this.overlay);
+  }
+
+  /** What is seen at a place of the canvas, CSS pixels from its top left. */
+  pick(x: number, y: number): Pick | null {
+    const rect = this.canvas.getBoundingClientRect();
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2((2 * x) / rect.width - 1, 1 - (2 * y) / rect.height), this.camera);
+    return pickAlong(this.solution, new Ray(caster.ray.origin, caster.ray.direction));
+  }
+
+  get stats(): StageStats {
+    return this.picture.stats;
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    this.picture.resize(width, height, window.devicePixelRatio);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.changed();
+  }
+
+  private changed(): void {
+    for (const listener of this.listeners) listener();
+    this.redraw();
+  }
+}
