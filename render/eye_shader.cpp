@@ -109,8 +109,7 @@ void EyeShader::Follow(const Ray& ray, const RayHit& hit, Way way, Task& task) c
     } else if (!straight) {
       next.direct = way.indirect;
     }
-    const Ray on{at.position + next_way.outward * paths_.tracer().Lift(hit.face), 0.0f, next_way.direction,
-                 std::numeric_limits<float>::infinity()};
+    const Ray on = paths_.tracer().Leaving(hit.face, at.position, next_way.outward, next_way.direction);
     ++task.work.rays;
     Follow(on, paths_.tracer().Intersect(on), next, task);
   };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -75,8 +76,12 @@ class RayTracer {
   /// size will do, as long as that is a few rounding errors of its own: a coin on a plane a million metres
   /// wide must not be read half a metre above itself.
   float Lift(uint32_t face) const { return face_lift_.empty() ? epsilon_ : face_lift_[face]; }
-  /// The same for the point that a ray from `from` is to end just short of: how far the ray misses it by
-  /// rounding follows from both.
+  /// The ray that leaves a point of `face` on the side `outward` points to (unit).
+  Ray Leaving(uint32_t face, const Vec3& point, const Vec3& outward, const Vec3& direction) const {
+    return {point + outward * Lift(face), 0.0f, direction, std::numeric_limits<float>::infinity()};
+  }
+  /// The same distance for the point that a ray from `from` is to end just short of: how far the ray misses
+  /// it by rounding follows from both.
   float LiftOfEnd(uint32_t face, const Vec3& from) const {
     return face_lift_.empty() ? epsilon_ : std::min(epsilon_, std::max(face_lift_[face], Roundings(from)));
   }

@@ -37,10 +37,6 @@ Vec3 PointOnTriangle(const std::array<Vec3, 3>& p, float u, float v) {
   return p[0] * (1 - s) + p[1] * (s * (1 - v)) + p[2] * (s * v);
 }
 
-Ray RayFrom(const Vec3& point, const Vec3& normal, const Vec3& direction, float epsilon) {
-  return {point + normal * epsilon, 0.0f, direction, std::numeric_limits<float>::infinity()};
-}
-
 // Faces of one surface that share positions hang together, but not across contact lines: light may fall on
 // one side of those only. Where a line touches a position, faces must share an edge that is none. A line is
 // one for what stands on it, too: the bottom of a box is dark, its sides are not.
@@ -201,7 +197,7 @@ std::vector<bool> FindLitSides(const Scene& scene, const RayTracer& tracer, uint
       met[walk].push_back({2 * piece[face] + uint32_t(e.side), face, at, normal});
       for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
         const Vec3 w = Frame(normal).ToWorld(CosineDirection(random.Next(), random.Next()));
-        const RayHit hit = tracer.Intersect(RayFrom(at, normal, w, tracer.Lift(face)));
+        const RayHit hit = tracer.Intersect(tracer.Leaving(face, at, normal, w));
         if (!hit.hit() || (hit.side == Side::kBack && !double_sided(hit.face))) break;
         face = hit.face;
         const auto p = scene.Corners(scene.faces[face]);
@@ -285,8 +281,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
     RandomStream random(Mix(Mix(seed, 0xe317), i));
     const Emitter& e = emitters[fate.emitter = choice.At((i + random.Next()) / kProbes)];
     const Vec3 w = Frame(e.normal).ToWorld(CosineDirection(random.Next(), random.Next()));
-    Ray ray =
-        RayFrom(PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w, tracer.Lift(e.face));
+    Ray ray = tracer.Leaving(e.face, PointOnTriangle(e.corners, random.Next(), random.Next()), e.normal, w);
     Rgb throughput = Rgb::Constant(1);
     MediaStack media;
     for (int mirror = 0, glass = 0; mirror <= Links::kMaxMirrors && glass <= Links::kMaxGlass;) {
@@ -321,7 +316,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
         throughput *= through ? Rgb(passed / chance) : Rgb(reflected / (1 - chance));
         const SpecularWay& on = through ? ways.transmission : ways.reflection;
         if (through) media = ways.beyond;
-        ray = RayFrom(at.position, on.outward, on.direction, tracer.Lift(hit.face));
+        ray = tracer.Leaving(hit.face, at.position, on.outward, on.direction);
         ++glass;
         continue;
       }
@@ -333,8 +328,7 @@ EmissionLoss FindEmissionLoss(const Scene& scene, const Mesh& mesh, const RayTra
       if (!lobes) return;
       const HitPoint at = FindHitPoint(scene, mesh, ray, hit, where);
       throughput *= lobes->SentOn(std::clamp(-ray.direction.dot(at.normal), 0.0f, 1.0f));
-      ray = RayFrom(at.position, at.geometric_normal, MirrorDirection(-ray.direction, at),
-                    tracer.Lift(hit.face));
+      ray = tracer.Leaving(hit.face, at.position, at.geometric_normal, MirrorDirection(-ray.direction, at));
       ++mirror;
     }
     fate.blocked += throughput;

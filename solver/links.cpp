@@ -219,8 +219,7 @@ struct Links::Tracing {
     const HitPoint at = FindHitPoint(scene, mesh, branch.ray, hit, where);
     const Vec3 wo = -branch.ray.direction;
     branch.throughput *= materials[material].SentOn(std::clamp(wo.dot(at.normal), 0.0f, 1.0f));
-    branch.ray = {at.position + at.geometric_normal * tracer.Lift(branch.hit.face), 0.0f,
-                  MirrorDirection(wo, at), std::numeric_limits<float>::infinity()};
+    branch.ray = tracer.Leaving(branch.hit.face, at.position, at.geometric_normal, MirrorDirection(wo, at));
     branch.last_mirror = mesh.element_patch[where.element];
     ++branch.mirrors;
     return true;
@@ -248,16 +247,16 @@ struct Links::Tracing {
     const auto reflect = [&](Branch& to, float weight) {
       to.throughput *= ways.reflection.weight * weight;
       to.bent = true;
-      to.ray = {at.position + ways.reflection.outward * tracer.Lift(branch.hit.face), 0.0f,
-                ways.reflection.direction, std::numeric_limits<float>::infinity()};
+      to.ray =
+          tracer.Leaving(branch.hit.face, at.position, ways.reflection.outward, ways.reflection.direction);
     };
     const auto transmit = [&](Branch& to, float weight) {
       to.throughput *= ways.transmission.weight * weight;
       to.basic *= ways.basic;
       to.bent |= !ways.straight;
       to.media = ways.beyond;
-      to.ray = {at.position + ways.transmission.outward * tracer.Lift(branch.hit.face), 0.0f,
-                ways.transmission.direction, std::numeric_limits<float>::infinity()};
+      to.ray = tracer.Leaving(branch.hit.face, at.position, ways.transmission.outward,
+                              ways.transmission.direction);
     };
     if (branch.share * std::min(reflects, passes) >= kSplit) {
       Branch other = branch;
