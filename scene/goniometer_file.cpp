@@ -125,7 +125,7 @@ class Table {
     for (size_t i = 0; i < fields.size(); ++i) {
       double number = 0;
       if (!Number(fields[i], &number)) {
-        Fail(line, "'" + Printable(fields[i]) + "' found, expected a number");
+        Fail(line, std::string("'") + Printable(fields[i]) + "' found, expected a number");
       }
       const std::string shown(fields[i]);
       if (i < 3) {

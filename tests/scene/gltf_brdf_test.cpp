@@ -174,5 +174,66 @@ TEST(GltfBrdfTest, EmbeddedDataIsWrittenOnceForAllItsMaterialsAndCheckedWhenRead
   refused({"value 0 is -1", "expected 0 to 1e9"});
 }
 
+// Materials of several kinds may point at one accessor.
+TEST(GltfBrdfTest, EmbeddedDataFollowsFromItsCoordinatesAxesAndNameToo) {
+  GltfBuilder b;
+  const int angles = b.Floats({0, 1}, "SCALAR"), others = b.Floats({0, 1.5f}, "SCALAR");
+  // The same for directions exchanged, so both kinds of coordinates take them.
+  const int values = b.Floats(std::vector<float>(24, 0.1f), "SCALAR");
+  const json first = {{"model", "measured"},
+                      {"name", "paint"},
+                      {"coordinates", "half-difference"},
+                      {"axes", {angles, angles, angles}},
+                      {"values", values}};
+  const auto with = [&](const char* member, const json& value) {
+    json brdf = first;
+    brdf[member] = value;
+    return brdf;
+  };
+  const auto read = [&](const std::vector<json>& brdfs) {
+    json& materials = b.document()["materials"] = json::array();
+    for (const json& brdf : brdfs) materials.push_back({{"extensions", {{kBrdfExtension, brdf}}}});
+    std::vector<std::shared_ptr<const MeasuredBrdf>> data;
+    const Scene s = ReadGltfScene(b.Write());
+    for (size_t i = 0; i < brdfs.size(); ++i) {
+      data.push_back(std::get<Measured>(s.materials[i].reflectance).data);
+    }
+    return data;
+  };
+  b.Node({{"mesh", b.TriangleMesh()}});
+  const auto data = read({first, with("coordinates", "incident-outgoing"),
+                          with("axes", {angles, angles, others}), with("name", "varnish"), first});
+  EXPECT_EQ(data[1]->coordinates(), MeasuredBrdf::Coordinates::kIncidentOutgoing);
+  EXPECT_EQ(data[2]->axes()[2][1], 1.5f);
+  EXPECT_EQ(data[3]->name(), "varnish");
+  for (const size_t i : {size_t{0}, size_t{4}}) {
+    EXPECT_EQ(data[i]->coordinates(), MeasuredBrdf::Coordinates::kHalfDifference);
+    EXPECT_EQ(data[i]->axes()[2][1], 1);
+    EXPECT_EQ(data[i]->name(), "paint");
+  }
+  EXPECT_EQ(data[4], data[0]) << "one copy of what is the same";
+
+  ExpectInputError(
+      [&] {
+        read({first, with("coordinates", "polar")});
+      },
+      {"material 1: LOBE_materials_brdf", "coordinates is \"polar\""});
+  ExpectInputError([&] { read({first, with("axes", {angles, angles})}); }, {"material 1", "three accessors"});
+  ExpectInputError([&] { read({first, with("name", 7)}); }, {"material 1", "name is 7"});
+}
+
+TEST(GltfBrdfTest, EqualDataOfTwoNamesIsWrittenOnceAndReadWithBoth) {
+  const Measured paint = test::MeasuredFrom(Ward{test::kModelColour, 0.3f}, 12, 6);
+  GltfBuilder b;
+  for (const Measured& m : {paint, test::Renamed(paint, "varnish")}) {
+    b.document()["materials"].push_back(GltfMaterial(Of(m), &b.writer));
+  }
+  EXPECT_EQ(b.document()["accessors"].size(), 4u);
+  b.Node({{"mesh", b.TriangleMesh()}});
+  const Scene s = ReadGltfScene(b.Write());
+  EXPECT_EQ(std::get<Measured>(s.materials[0].reflectance).data->name(), paint.data->name());
+  EXPECT_EQ(std::get<Measured>(s.materials[1].reflectance).data->name(), "varnish");
+}
+
 }  // namespace
 }  // namespace lobe

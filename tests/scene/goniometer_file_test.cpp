@@ -104,6 +104,8 @@ TEST(GoniometerFileTest, GapsDisorderAndRubbishAreRefusedByTheirLine) {
   refused("0 0 0 nan\n", {"line 1: f_r is nan"});
   refused("0 0 0 1e300\n", {"line 1: f_r is 1e300"});
   refused("0 0 0 1\n0 0 x 1\n", {"line 2: 'x' found, expected a number"});
+  refused(std::string("0 0 0 1\n0 0 \0x 1\n", 17), {"line 2: '\\u0000x' found, expected a number"});
+  refused("0 0 0 1\n0 0 \x1b[31m 1\n", {"line 2: '\\u001b[31m' found, expected a number"});
   refused("0 0 0 1\n0 0 180 1 1 1\n", {"line 2: has 6 numbers, expected 4 as before"});
   refused(without(3),
           {"line 3: theta_i 0, theta_o 60, dphi 180 found, expected theta_i 0, theta_o 60, dphi 0"});

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/measured_file.h"
 #include "tests/support/input_errors.h"
 #include "tests/support/merl_writer.h"
 
@@ -47,6 +48,16 @@ TEST(MerlFileTest, BinsAreReadAtTheirCentres) {
     const Rgb expected = EvaluateBrdf(Model(), wi, wo), got = f.Value(wi, wo);
     EXPECT_TRUE(((got - expected).abs() <= 1e-5f * expected).all())
         << i << ' ' << j << ' ' << k << ": " << got.transpose() << " against " << expected.transpose();
+  }
+}
+
+// As file systems without small letters bring them.
+TEST(MerlFileTest, EndingsInCapitalsAreMerlsToo) {
+  const test::ScratchFolder folder;
+  for (const char* name : {"X.binary", "X.BINARY", "X.Binary"}) {
+    WriteWholeFile(folder.File(name), "short");
+    ExpectInputError([&] { ReadMeasuredFile(folder.File(name)); },
+                     {std::string(name) + ": ends after 5 bytes"});
   }
 }
 

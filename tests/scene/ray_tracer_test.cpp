@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -255,6 +257,44 @@ TEST(RayTracerTest, LiftedOriginsDoNotMeetTheirOwnFace) {
   }
   EXPECT_EQ(met, 0) << "of " << total;
   EXPECT_EQ(missed, 0) << "of " << total;
+}
+
+// The end of a long ray is as uncertain as its beginning, however small and near the origin the face.
+TEST(RayTracerTest, ASmallFaceDoesNotHideItselfFromAfar) {
+  constexpr float kSize = 0.01f, kAway = 3000;
+  SceneBuilder b;
+  const uint32_t grey = b.AddLambert(Rgb::Constant(0.5f));
+  b.AddTriangle({0, 0, 0}, {0, 0, kSize}, {kSize, 0, 0}, grey);  // faces +y
+  b.AddQuad({-kAway, -9, -kAway}, {-kAway, -9, kAway}, {kAway, -9, kAway}, {kAway, -9, -kAway}, grey);
+  const Scene open = b.Build();
+  // A lid as large as the face, one of its sizes above it.
+  b.AddQuad({-kSize, kSize, -kSize}, {-kSize, kSize, 2 * kSize}, {2 * kSize, kSize, 2 * kSize},
+            {2 * kSize, kSize, -kSize}, grey);
+  const Scene lidded = b.Build();
+  const RayTracer tracer(open), under_lid(lidded);
+  const auto p = open.Corners(open.faces[0]);
+  Random random;
+  int hidden = 0, hidden_by_its_own_lift = 0, seen_through_the_lid = 0;
+  constexpr int kRays = 5000;
+  for (int i = 0; i < kRays; ++i) {
+    float u = random.Uniform(), v = random.Uniform();
+    if (u + v > 1) std::tie(u, v) = std::pair(1 - u, 1 - v);
+    const Vec3 target = (1 - u - v) * p[0] + u * p[1] + v * p[2];
+    Vec3 up = random.Direction();
+    up.y() = std::abs(up.y()) + 1;  // not past the lid
+    const Vec3 from = kAway * up.normalized();
+    const auto ray = [&](float lift) {
+      const Vec3 to = target + lift * Vec3::UnitY();
+      return Ray{from, 0, to - from, 1};
+    };
+    hidden += tracer.Occluded(ray(tracer.LiftOfEnd(0, from)));
+    hidden_by_its_own_lift += tracer.Occluded(ray(tracer.Lift(0)));
+    seen_through_the_lid += !under_lid.Occluded(ray(under_lid.LiftOfEnd(0, from)));
+  }
+  EXPECT_EQ(hidden, 0) << "of " << kRays;
+  EXPECT_GT(hidden_by_its_own_lift, kRays / 100) << "else this is no test";
+  EXPECT_EQ(seen_through_the_lid, 0) << "of " << kRays;
+  EXPECT_EQ(tracer.LiftOfEnd(0, {0, 1, 0}), tracer.Lift(0)) << "from nearby its own will do";
 }
 
 TEST(RayTracerTest, SealedRoomDoesNotLeak) {

@@ -179,6 +179,29 @@ TEST(SpecularSurfacesTest, TotalReflectionBeginsAtTheCriticalAngle) {
   EXPECT_FALSE(open(critical + 1e-3f));
 }
 
+// KHR_materials_ior: 0 stands for an index without end. Chances are weights over `basic`, which must not be 0
+// where nothing is transmitted.
+TEST(SpecularSurfacesTest, GlassOfIndexZeroReflectsAllFromBothSides) {
+  const auto s = Surfaces({ClearGlass(0), ClearGlass(1.5f)});
+  RandomDirections random(23);
+  const auto expect_mirror = [](const SpecularWays& ways) {
+    EXPECT_TRUE((ways.reflection.weight == 1).all()) << ways.reflection.weight.transpose();
+    EXPECT_TRUE(ways.reflection.direction.allFinite());
+    EXPECT_FALSE(ways.transmission.open());
+    EXPECT_TRUE(ways.transmission.direction.allFinite());
+    EXPECT_TRUE((ways.transmission.weight / ways.basic == 0).all()) << "of power";
+  };
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 n = random.Direction(), wo = i % 10 ? random.Above(n) : n;
+    expect_mirror(s.Continue(0, Side::kFront, FlatHit(n), wo, {}));
+    expect_mirror(s.Continue(0, Side::kFront, FlatHit(n), wo, Inside({1})));
+    expect_mirror(s.Continue(0, Side::kBack, FlatHit(n), wo, {}));
+    expect_mirror(s.Continue(0, Side::kBack, FlatHit(n), wo, Inside({0})));
+    expect_mirror(s.Continue(0, Side::kBack, FlatHit(n), wo, Inside({1, 0})));
+    expect_mirror(s.Continue(1, Side::kFront, FlatHit(n), wo, Inside({0})));
+  }
+}
+
 TEST(SpecularSurfacesTest, AtNormalIncidenceBothMediaDecideWhatIsReflected) {
   const auto s = Surfaces({ClearGlass(1.5f), ClearGlass(1.33f)});
   const auto reflected = [&](Side side, const MediaStack& media) {

@@ -68,6 +68,20 @@ TEST(MaterialModelsTest, ASolutionHoldsItsMeasuredDataAndReadsItBackBitForBit) {
       << "one copy for both";
 }
 
+// What is embedded once has two names all the same; the scene must know itself in its solution.
+TEST(MaterialModelsTest, EqualDataOfTwoNamesComesBackFromASolutionThatCanBeResumed) {
+  const Measured paint = test::MeasuredFrom(Ward{kColour, 0.3f}, 20, 8);
+  const Scene scene = PaintedBox({paint, test::Renamed(paint, "varnish")});
+  SolveOptions options;
+  options.mesh.max_edge = 4;
+  const test::ScratchFolder folder;
+  WriteSolution(Solve(scene, options), folder.File("a.glb"));
+  const Solution back = ReadSolution(folder.File("a.glb"));
+  EXPECT_EQ(Describe(back.scene.materials[1].reflectance), Describe(paint));
+  EXPECT_EQ(Describe(back.scene.materials[2].reflectance), "measured varnish");
+  EXPECT_EQ(DifferenceOfScenes(scene, back.scene), "");
+}
+
 TEST(MaterialModelsTest, ResumingTellsOtherDataFromTheSame) {
   const Scene scene = PaintedBox({test::MeasuredFrom(Ward{kColour, 0.3f}, 20, 8)});
   EXPECT_EQ(DifferenceOfScenes(scene, PaintedBox({test::MeasuredFrom(Ward{kColour, 0.3f}, 20, 8)})), "");

@@ -94,6 +94,12 @@ inline Measured GoniometerFrom(const Reflectance& r, int step) {
       MeasuredBrdf::FromAngles("angles of " + Describe(r), theta, theta, azimuth, values))};
 }
 
+/// The same data under another name.
+inline Measured Renamed(const Measured& m, const std::string& name) {
+  const MeasuredBrdf& data = *m.data;
+  return {std::make_shared<const MeasuredBrdf>(name, data.coordinates(), data.axes(), data.values())};
+}
+
 /// A model with what its laws need to know of it.
 struct ModelCase {
   Reflectance r;
