@@ -115,8 +115,30 @@ class DocumentFiller {
     record["frame"] = kFrameName;
     record["exposureScale"] = JsonNumber(colours_.exposure_scale);
     record["surfaceNames"] = s_.scene.surface_names;
+    record["faces"] = Faces();
     own_.add_to_record(&record);
     return record;
+  }
+
+  /// The input geometry: what rays hit, and all there is of glass.
+  json Faces() {
+    std::vector<uint32_t> indices, material, surface;
+    std::vector<uint8_t> contact;
+    for (const Face& face : s_.scene.faces) {
+      indices.insert(indices.end(), face.vertex.begin(), face.vertex.end());
+      material.push_back(face.material);
+      surface.push_back(face.surface);
+      contact.push_back(static_cast<uint8_t>(face.contact));
+    }
+    json faces = {{"positions", glb_.AddFloats(Floats(s_.scene.positions), "VEC3", Target::kNone)},
+                  {"normals", glb_.AddFloats(Floats(s_.scene.normals), "VEC3", Target::kNone)},
+                  {"indices", glb_.AddUints(indices, Target::kNone)},
+                  {"material", glb_.AddUints(material, Target::kNone)},
+                  {"surface", glb_.AddUints(surface, Target::kNone)}};
+    if (std::any_of(contact.begin(), contact.end(), [](uint8_t bits) { return bits != 0; })) {
+      faces["contact"] = glb_.AddBytes(contact);
+    }
+    return faces;
   }
 
   const Solution& s_;

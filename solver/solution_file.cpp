@@ -1,5 +1,4 @@
 // Writes solution.glb: docs/format.md says what and why. Reading: solution_reader.cpp.
-#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,7 +23,7 @@ class SolutionWriter {
                  64 * s_.mesh.patches.size() + 28 * s_.scene.faces.size() + 24 * s_.scene.positions.size());
     const OwnMembers own{
         [&](uint32_t p, const PatchTrees& trees, json* extension) { AddToPatch(p, trees, extension); },
-        [&](json* record) { AddFaces(record); }};
+        [](json*) {}};
     FillSolutionDocument(s_, own, &glb_);
     glb_.Write(path);
   }
@@ -49,26 +48,6 @@ class SolutionWriter {
   void AddPart(const NodeLobes& lobes, uint32_t patch, bool gloss, const char* name, json* extension) {
     const std::vector<float> values = PartValues(lobes, patch, gloss);
     if (!values.empty()) (*extension)[name] = glb_.AddFloats(values, "SCALAR", Target::kNone);
-  }
-
-  /// The input geometry.
-  void AddFaces(json* record) {
-    std::vector<uint32_t> indices, material, surface;
-    std::vector<uint8_t> contact;
-    for (const Face& face : s_.scene.faces) {
-      indices.insert(indices.end(), face.vertex.begin(), face.vertex.end());
-      material.push_back(face.material);
-      surface.push_back(face.surface);
-      contact.push_back(static_cast<uint8_t>(face.contact));
-    }
-    (*record)["faces"] = {{"positions", glb_.AddFloats(Floats(s_.scene.positions), "VEC3", Target::kNone)},
-                          {"normals", glb_.AddFloats(Floats(s_.scene.normals), "VEC3", Target::kNone)},
-                          {"indices", glb_.AddUints(indices, Target::kNone)},
-                          {"material", glb_.AddUints(material, Target::kNone)},
-                          {"surface", glb_.AddUints(surface, Target::kNone)}};
-    if (std::any_of(contact.begin(), contact.end(), [](uint8_t bits) { return bits != 0; })) {
-      (*record)["faces"]["contact"] = glb_.AddBytes(contact);
-    }
   }
 
   const Solution& s_;

@@ -15,9 +15,9 @@ class ViewingWriter {
   ViewingWriter(const Solution& solution, ViewingPrecision precision) : s_(solution), precision_(precision) {}
 
   std::vector<uint8_t> Bytes(const std::string& name) {
-    // An upper bound: nodes' position, normal, colour, hidden; elements.
+    // An upper bound: nodes' position, normal, colour, hidden; elements; faces.
     glb_.Reserve(40 * s_.mesh.node_count() + s_.total.bytes() + 12 * s_.mesh.element_count() +
-                 64 * s_.mesh.patches.size());
+                 64 * s_.mesh.patches.size() + 28 * s_.scene.faces.size() + 24 * s_.scene.positions.size());
     const OwnMembers own{[&](uint32_t p, const PatchTrees&, json* extension) {
                            AddPart(p, /*gloss=*/false, "base", extension);
                            AddPart(p, /*gloss=*/true, "gloss", extension);
