@@ -89,8 +89,8 @@ TEST(LobeTableTest, ErrorByDegreeIsThatOfTheDesign) {
   }
 }
 
-// Products with the basis oscillate faster than the lobes; the points must follow. With 40 x 64 they were 0.4
-// % off, and at the last knot, 90 degrees, 10 % to degree 16 and 60 % to degree 24.
+// Products with the basis oscillate faster than the lobes; the points must follow. With 40 x 64 the
+// coefficients were 0.4 % off, and at the last knot, 90 degrees, 10 % to degree 16 and 60 % to degree 24.
 TEST(LobeTableTest, CoefficientsAreResolvedUpToTheHighestDegreeAndToGrazingIncidence) {
   for (const double roughness : {1.0, 0.7, 0.2}) {
     const Model model = Ggx(roughness);
