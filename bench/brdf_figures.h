@@ -8,5 +8,7 @@ void BrdfFigures();
 void LobeErrorFigures();
 /// Error and negative flux of lobes whose higher degrees are damped where they ring more than a bound.
 void DeringFigures();
+/// Fewest knots over the incident angle by how it is measured, and what they lose at grazing angles.
+void IncidenceFigures();
 
 }  // namespace lobe

@@ -223,6 +223,11 @@ BENCHMARK_CAPTURE(Build, metal_roughness_0_4, Metal(0.4f))->Unit(benchmark::kMil
 BENCHMARK_CAPTURE(Build, plastic_roughness_0_4, Plastic(0.4f))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Build, phong_20, Phong{Rgb::Constant(0.5f), 20})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Build, ward_0_2, Ward{Rgb::Constant(0.5f), 0.2f})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Build, cook_torrance_0_2, CookTorrance{Rgb::Constant(0.5f), 0.2f})
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Build, ashikhmin_shirley_200,
+                  AshikhminShirley{Rgb::Constant(0.5f), Rgb::Constant(0.5f), 200})
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BuildAgain, metal_roughness_0_4, Metal(0.4f))->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BuildAgain, plastic_roughness_0_4, Plastic(0.4f))->Unit(benchmark::kMillisecond);
 

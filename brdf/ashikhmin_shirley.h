@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -32,6 +33,8 @@ struct AshikhminShirley {
   static Real WhiteGloss(const HalfAngles<Real>& h, Real cos_i, Real cos_o, Real n) {
     return (n + 1) / (8 * std::numbers::pi_v<Real>)*h.CosinePower(n) / (h.cos_d * std::max(cos_i, cos_o));
   }
+  /// Where it has kinks (brdf/hemisphere_integral.h): cos_i = cos_o.
+  static std::array<double, 2> Kinks(double delta) { return {delta, std::numbers::pi / 2}; }
 };
 
 }  // namespace lobe

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -31,6 +32,15 @@ struct CookTorrance {
   static Real White(const HalfAngles<Real>& h, Real cos_i, Real cos_o, Real alpha) {
     const Real groove = 2 * h.cos_h() * std::min(cos_i, cos_o) / h.cos_d;
     return BeckmannD(h, alpha) * std::min(Real(1), groove) / (4 * cos_i * cos_o);
+  }
+  /// Where G has kinks (brdf/hemisphere_integral.h): 2 cos_h cos_o = cos_d is cos(3 theta_h - delta) = 0, 2
+  /// cos_h cos_i = cos_d is cos(theta_h + delta) = 0, and between grooves that hide and that shade cos_i =
+  /// cos_o.
+  static std::array<double, 2> Kinks(double delta) {
+    constexpr double kRightAngle = std::numbers::pi / 2;
+    if (delta > kRightAngle / 2) return {kRightAngle - delta, delta};
+    const double hiding = (kRightAngle + delta) / 3;
+    return {hiding, kRightAngle};
   }
 };
 

@@ -36,21 +36,31 @@ OutgoingPoints HalfVectorRule::Points(double cos_theta_i) const {
       theta_max = std::min(theta_max, 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0)));
     }
     const double x_max = std::asinh(theta_max / width);
-    for (size_t j = 0; j < polar.nodes.size(); ++j) {
-      // theta_h = width sinh(x): even steps across the peak, even ratios along the tail. Towards wo's
-      // horizon, where at grazing incidence masking varies within cos_o ~ cos_i, steps shrink as a cube.
-      const double v = 1.0 - polar.nodes[j];
-      const double e = std::exp(x_max * (1.0 - v * v * v));
-      const double theta = 0.5 * width * (e - 1.0 / e), theta_by_x = 0.5 * width * (e + 1.0 / e);
-      const double sin_h = std::sin(theta), cos_h = std::cos(theta);
-      const double wi_h = si * sin_h * cos_phi + ci * cos_h;
-      const double wo_z = 2.0 * wi_h * cos_h - ci;
-      if (wo_z <= 0.0 || wi_h <= 0.0) continue;  // rounding at the end of the interval
-      out.x.push_back(2.0 * wi_h * sin_h * cos_phi - si);
-      out.y.push_back(2.0 * wi_h * sin_h * sin_phi);
-      out.z.push_back(wo_z);
-      out.weight.push_back(azimuth_weight * polar.weights[j] * 3.0 * v * v * x_max * theta_by_x * sin_h *
-                           4.0 * wi_h);  // d omega_o = 4 (wi.h) d omega_h
+    // theta_h = width sinh(x): even steps across the peak, even ratios along the tail. Towards wo's horizon,
+    // where at grazing incidence masking varies within cos_o ~ cos_i, steps shrink as a cube.
+    std::array<double, 4> v_end{1.0};  // v is 1 at the normal, 0 at the horizon
+    int intervals = 1;
+    for (const double kink : kinks ? kinks(delta) : std::array<double, 2>{}) {
+      if (kink > 0 && kink < theta_max)
+        v_end[intervals++] = std::cbrt(1.0 - std::asinh(kink / width) / x_max);
+    }
+    v_end[intervals] = 0.0;
+    for (int interval = 0; interval < intervals; ++interval) {
+      const double length = v_end[interval] - v_end[interval + 1];
+      for (size_t j = 0; j < polar.nodes.size(); ++j) {
+        const double v = v_end[interval] - length * polar.nodes[j];
+        const double e = std::exp(x_max * (1.0 - v * v * v));
+        const double theta = 0.5 * width * (e - 1.0 / e), theta_by_x = 0.5 * width * (e + 1.0 / e);
+        const double sin_h = std::sin(theta), cos_h = std::cos(theta);
+        const double wi_h = si * sin_h * cos_phi + ci * cos_h;
+        const double wo_z = 2.0 * wi_h * cos_h - ci;
+        if (wo_z <= 0.0 || wi_h <= 0.0) continue;  // rounding at the end of the interval
+        out.x.push_back(2.0 * wi_h * sin_h * cos_phi - si);
+        out.y.push_back(2.0 * wi_h * sin_h * sin_phi);
+        out.z.push_back(wo_z);
+        out.weight.push_back(azimuth_weight * polar.weights[j] * length * 3.0 * v * v * x_max * theta_by_x *
+                             sin_h * 4.0 * wi_h);  // d omega_o = 4 (wi.h) d omega_h
+      }
     }
   }
   return out;

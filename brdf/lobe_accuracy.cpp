@@ -21,9 +21,10 @@ const double kWorstCosine = std::cos(85 * kPi / 180);
 
 // Twice the points of either way that tables take, so that their error is seen and not shared.
 HalfVectorRule Finer(const HalfVectorRule& rule) {
-  return {.width = rule.width,
-          .polar = GaussLegendre(2 * int(rule.polar.nodes.size()), 0, 1),
-          .azimuth = GaussLegendre(2 * int(rule.azimuth.nodes.size()), -1, 1)};
+  HalfVectorRule out = rule;
+  out.polar = GaussLegendre(2 * int(rule.polar.nodes.size()), 0, 1);
+  out.azimuth = GaussLegendre(2 * int(rule.azimuth.nodes.size()), -1, 1);
+  return out;
 }
 
 // Values of base and gloss at the points of a rule, with the measure cos d omega.

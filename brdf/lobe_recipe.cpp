@@ -16,11 +16,6 @@ std::string Key(const char* model, std::initializer_list<double> parameters) {
   return key.str();
 }
 
-// For models with kinks (where cos_i = cos_o, or where G sets in), which the default rule meets to 1e-4.
-HalfVectorRule Fine(double width) {
-  return {.width = width, .polar = GaussLegendre(120, 0, 1), .azimuth = GaussLegendre(160, -1, 1)};
-}
-
 // Width of cos^n, as the alpha of a Gaussian of slopes.
 double PowerWidth(double n) { return std::min(1.0, std::sqrt(2 / (n + 2))); }
 
@@ -77,14 +72,22 @@ struct Gloss {
     const auto f = [alpha](const Vec3d& wi, const Vec3d& wo) {
       return CookTorrance::White(HalfAngles<double>(wi, wo), wi.z(), wo.z(), alpha);
     };
-    return LobeRecipe{Key("cook-torrance", {alpha}), f, Fine(std::min(1.0, alpha)), m.f0, 1 - m.f0};
+    return LobeRecipe{Key("cook-torrance", {alpha}),
+                      f,
+                      {.width = std::min(1.0, alpha), .kinks = CookTorrance::Kinks},
+                      m.f0,
+                      1 - m.f0};
   }
   Recipe operator()(const AshikhminShirley& m) const {
     const double n = m.exponent;
     const auto f = [n](const Vec3d& wi, const Vec3d& wo) {
       return AshikhminShirley::WhiteGloss(HalfAngles<double>(wi, wo), wi.z(), wo.z(), n);
     };
-    return LobeRecipe{Key("ashikhmin-shirley", {n}), f, Fine(PowerWidth(n)), m.specular, 1 - m.specular};
+    return LobeRecipe{Key("ashikhmin-shirley", {n}),
+                      f,
+                      {.width = PowerWidth(n), .kinks = AshikhminShirley::Kinks},
+                      m.specular,
+                      1 - m.specular};
   }
   Recipe operator()(const Plastic& m) const {
     return Ggx(m.roughness(), Rgb::Constant(m.F0()), Rgb::Constant(1));
@@ -113,7 +116,9 @@ struct Base {
     };
     // It has a cone at normal incidence: rises in proportion to theta.
     const auto albedo = [a, b](double cos_i) { return OrenNayar::WhiteAlbedo(cos_i, a, b); };
-    return LobeRecipe{Key("oren-nayar", {m.sigma}), f, Fine(1), m.albedo, Rgb::Zero(), albedo};
+    // Kinks where the horizontal parts are at right angles, which the default rule meets to 1e-4.
+    const HalfVectorRule fine{.polar = GaussLegendre(120, 0, 1), .azimuth = GaussLegendre(160, -1, 1)};
+    return LobeRecipe{Key("oren-nayar", {m.sigma}), f, fine, m.albedo, Rgb::Zero(), albedo};
   }
   Recipe operator()(const AshikhminShirley& m) const {
     const auto f = [](const Vec3d& wi, const Vec3d& wo) {

@@ -57,13 +57,24 @@ class AlbedoAngles {
 // Values of all functions at one pair of directions.
 using Parts = std::function<void(const Vec3d& wi, const Vec3d& wo, double* values)>;
 
-// The rule as it is up to degree 24; beyond, products with the basis ask for more points than lobes do. With
-// 40 x 64 of them coefficients of GGX to degree 32 are up to 0.36 % off (docs/validation.md#knots).
-HalfVectorRule Resolving(const HalfVectorRule& rule, int l_max) {
-  if (l_max <= 24) return rule;
-  return {.width = rule.width,
-          .polar = GaussLegendre(std::max(56, int(rule.polar.nodes.size())), 0.0, 1.0),
-          .azimuth = GaussLegendre(std::max(80, int(rule.azimuth.nodes.size())), -1.0, 1.0)};
+// Incident angles beyond this, 87 degrees, are grazing for Resolving().
+constexpr double kGrazingCosine = 0.05;
+
+// The rule for products with the basis, which ask for more points than the lobe alone does: beyond degree 24,
+// and at grazing incidence from degree 11 on, where many azimuths crowd at the horizon's cut. With 40 x 64
+// everywhere coefficients of GGX to degree 32 are up to 0.36 % off by flux, and at 90 degrees those to degree
+// 20 by 40 % (docs/validation.md#knots).
+HalfVectorRule Resolving(const HalfVectorRule& rule, int l_max, bool grazing) {
+  size_t polar = rule.polar.nodes.size(), azimuth = rule.azimuth.nodes.size();
+  if (l_max > 24) {
+    polar = std::max<size_t>(polar, 56);
+    azimuth = std::max<size_t>(azimuth, 80);
+  }
+  if (grazing) azimuth = std::max<size_t>(azimuth, 6 * l_max);
+  HalfVectorRule out = rule;
+  out.polar = GaussLegendre(int(polar), 0.0, 1.0);
+  out.azimuth = GaussLegendre(int(azimuth), -1.0, 1.0);
+  return out;
 }
 
 // Tables of as many functions. One pass over the points serves them all.
@@ -80,7 +91,7 @@ void BuildParts(const Parts& f, int l_max, const HalfVectorRule& rule, int knots
     table->norm2.resize(knots);
   }
   if (inner) inner->resize(knots);
-  const HalfVectorRule rule_at_knots = Resolving(rule, l_max);
+  const HalfVectorRule rule_at_knots[2] = {Resolving(rule, l_max, false), Resolving(rule, l_max, true)};
   const AlbedoAngles albedo_angles(rule.width);
   Eigen::MatrixXd albedo(AlbedoAngles::kCount, parts);
 
@@ -89,7 +100,7 @@ void BuildParts(const Parts& f, int l_max, const HalfVectorRule& rule, int knots
     const double cosine =
         std::clamp(at_knot ? spline.KnotCosine(angle) : albedo_angles.Cosine(angle - knots), 1e-7, 1.0);
     const Vec3d wi(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
-    const OutgoingPoints points = (at_knot ? rule_at_knots : rule).Points(cosine);
+    const OutgoingPoints points = (at_knot ? rule_at_knots[cosine < kGrazingCosine] : rule).Points(cosine);
     Eigen::MatrixXd value(points.size(), parts);
     std::vector<double> at_point(parts);
     for (int i = 0; i < points.size(); ++i) {

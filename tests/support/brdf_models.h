@@ -128,10 +128,10 @@ inline std::vector<ModelCase> ModelsBeyondGltf() {
     out.push_back({BlinnPhong{n == 30 ? white : kModelColour, n}, power_width(n), n == 30 ? 1 : 0.8});
   }
   for (const float alpha : {0.05f, 0.3f, 1.0f}) {
-    out.push_back({CookTorrance{kModelColour, alpha}, alpha, 1, false});
+    out.push_back({CookTorrance{kModelColour, alpha}, alpha, 1, false, 1e-5});
   }
-  out.push_back({CookTorrance{white, 0.2f}, 0.2, 1, false});
-  out.push_back({CookTorrance{dark, 0.1f}, 0.1, 1, false});
+  out.push_back({CookTorrance{white, 0.2f}, 0.2, 1, false, 1e-5});
+  out.push_back({CookTorrance{dark, 0.1f}, 0.1, 1, false, 1e-5});
   for (const float sigma : {0.0f, 0.2f, 0.6f, 1.5f}) {
     out.push_back({OrenNayar{kModelColour, sigma}, 1, 0.8 * OrenNayar::kMostAlbedo, false});
   }
