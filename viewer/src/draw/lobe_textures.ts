@@ -1,5 +1,5 @@
 /**
- * A solution's lobes as textures, and the GLSL that reads them: `lobeTowards`, the radiance of a glossy node.
+ * A solution's lobes as textures, and the GLSL that reads them: `lobeOf`.
  *
  * - `coefficients`: half (or float) RGB, one coefficient over Zernike's basis a texel, node after node, k within a
  *   node, running on through the rows and layers of a 2D array: sizes are bounded by memory alone.
@@ -126,46 +126,43 @@ vec3 coefficientAt(int i) {
   return texelFetch(coefficients, ivec3(i & 2047, (i >> 11) & 2047, i >> 22), 0).rgb;
 }
 
-// docs/conventions.md#frame and #horizon.
-vec3 toLocal(vec3 n, vec3 w) {
-  float s = n.z < 0.0 ? -1.0 : 1.0;
-  float a = -1.0 / (s + n.z), b = n.x * n.y * a;
-  vec3 local = vec3(dot(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), w), dot(vec3(b, s + n.y * n.y * a, -n.y), w),
-                    dot(n, w));
-  if (local.z >= 0.0) return local;
-  float across = length(local.xy);
-  return across > 0.0 ? vec3(local.xy / across, 0.0) : vec3(1.0, 0.0, 0.0);
-}
-
-// Sum of the lobe's terms of degree up to l, by the recurrence of sh/zernike.ts.
-vec3 lobeOf(int first, int l, vec3 local) {
-  float u = 2.0 * dot(local.xy, local.xy) - 1.0;
-  vec2 turn = vec2(1.0, 0.0);  // (x + i y)^m
+// Sum of the lobe's terms of degree up to l, by the recurrence of sh/zernike.ts; and its derivatives by x and y of the
+// disc, the recurrence's own derivative by u going along.
+vec3 lobeOf(int first, int l, vec2 at, out vec3 alongX, out vec3 alongY) {
+  float u = 2.0 * dot(at, at) - 1.0;
+  vec2 turn = vec2(1.0, 0.0), turnBefore = vec2(0.0);  // (x + i y)^m
   vec3 sum = vec3(0.0);
+  alongX = alongY = vec3(0.0);
   for (int m = 0; m <= l; ++m) {
-    float before = 0.0, here = 1.0;
-    vec3 even = vec3(0.0), odd = vec3(0.0);
+    float before = 0.0, here = 1.0, slopeBefore = 0.0, slope = 0.0;
+    vec3 even = vec3(0.0), odd = vec3(0.0), evenSlope = vec3(0.0), oddSlope = vec3(0.0);
     for (int n = m, j = 0; n <= l; n += 2, ++j) {
       vec4 step = texelFetch(steps, ivec2(j, m), 0);
       int k = first + (n * (n + 1)) / 2 + (n + m) / 2;
-      float radial = here * step.w;
-      even += radial * coefficientAt(k);
-      if (m > 0) odd += radial * coefficientAt(k - m);
-      float next = (step.x * u + step.y) * here - step.z * before;
+      vec3 c = coefficientAt(k) * step.w;
+      even += here * c;
+      evenSlope += slope * c;
+      if (m > 0) {
+        c = coefficientAt(k - m) * step.w;
+        odd += here * c;
+        oddSlope += slope * c;
+      }
+      float factor = step.x * u + step.y;
+      float next = factor * here - step.z * before, slopeNext = step.x * here + factor * slope - step.z * slopeBefore;
       before = here;
       here = next;
+      slopeBefore = slope;
+      slope = slopeNext;
     }
     sum += turn.x * even + turn.y * odd;
-    turn = vec2(turn.x * local.x - turn.y * local.y, turn.x * local.y + turn.y * local.x);
+    vec3 bySquare = 4.0 * (turn.x * evenSlope + turn.y * oddSlope);  // du/dx = 4 x
+    alongX += float(m) * (turnBefore.x * even + turnBefore.y * odd) + at.x * bySquare;
+    alongY += float(m) * (turnBefore.x * odd - turnBefore.y * even) + at.y * bySquare;
+    turnBefore = turn;
+    turn = vec2(turn.x * at.x - turn.y * at.y, turn.x * at.y + turn.y * at.x);
   }
+  alongX *= coefficientUnit;
+  alongY *= coefficientUnit;
   return sum * coefficientUnit;
-}
-
-// Radiance of glossy node i (counted from the first glossy one) towards the eye.
-vec3 lobeTowards(int i, vec3 eye) {
-  ivec2 at = ivec2((i & 1023) * 2, i >> 10);
-  uvec4 place = texelFetch(table, at, 0), way = texelFetch(table, at + ivec2(1, 0), 0);
-  vec3 wo = normalize(eye - uintBitsToFloat(place.xyz));
-  return lobeOf(int(place.w), min(int(way.w), degree), toLocal(uintBitsToFloat(way.xyz), wo));
 }
 `;

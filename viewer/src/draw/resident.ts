@@ -37,11 +37,11 @@ export class Resident {
     });
     const unit = solution.exposureScale > 0 ? solution.exposureScale : 1;
     this.surfaces = new Surfaces(
-      solution, this.layout, { coefficients, coefficientUnit }, this.nodeLight.target.texture, unit, opaque);
-    this.scene.add(this.surfaces.patches, this.surfaces.backdrop);
+      solution, this.layout, { coefficients, coefficientUnit }, this.nodeLight.target.textures, unit, opaque);
+    this.scene.add(...this.surfaces.patches, this.surfaces.backdrop);
     this.speculars = Speculars.of(solution, this.layout, this.surfaces, this.scene, box);
     this.tone = new Tone(unit);
-    const depth = this.surfaces.depths[0].material as never;
+    const depth = this.surfaces.depths[1].material as never;
     for (const geometry of this.speculars?.mirrorGeometries ?? []) this.over.add(asMesh(geometry, depth));
     this.over.add(...this.surfaces.depths);
     for (const mesh of this.over.children) (mesh as Mesh).renderOrder = -1e9;

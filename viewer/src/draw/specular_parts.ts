@@ -1,7 +1,7 @@
 /** What of a solution reflects as a mirror or lets see through, cut into parts that are drawn as one. */
 import { Box3, Plane, Vector3 } from 'three';
 import type { Faces, Solution } from '../solution/solution';
-import type { Layout, PlacedPatch } from './layout';
+import { isFlat, type Layout, type PlacedPatch } from './layout';
 
 export interface SpecularPart {
   material: number;
@@ -30,7 +30,8 @@ export function mirrorsOf(solution: Solution, layout: Layout, diagonal: number):
         new Vector3().fromArray(patch.normals), new Vector3().fromArray(patch.positions, 3 * patch.indices[0]))
       : null;
     let part = parts.find(
-      (p) => p.material === patch.material && p.plane && plane && isSame(p.plane, plane, diagonal));
+      (p) => p.material === patch.material && p.plane && plane && isSame(p.plane, plane, diagonal) &&
+        isFlat(p.patches[0].patch) === isFlat(patch));
     if (!part) parts.push((part = { material: patch.material, plane, box: new Box3(), area: 0, patches: [], glass: null }));
     part.patches.push(placed);
     part.box.union(new Box3().setFromArray(patch.positions as never));

@@ -19,10 +19,10 @@ import {
   type PerspectiveCamera, type Side, type WebGLRenderer,
 } from 'three';
 import type { Solution } from '../solution/solution';
-import { elementsOf, type Layout } from './layout';
+import { elementsOf, isFlat, type Layout } from './layout';
 import { MirroredCamera } from './reflection';
 import { glassOf, isSame, mirrorsOf, type SpecularPart } from './specular_parts';
-import { asMesh, patchFragment, type Surfaces } from './surfaces';
+import { asMesh, plainMain, type Surfaces } from './surfaces';
 
 const kMostViews = 4;
 const kMostProbes = 8;
@@ -50,7 +50,6 @@ interface View {
 
 /** `lookup(position, normal)`: light that arrives from where a mirror shows it, and Fresnel's factor. */
 const reflectionGlsl = /* glsl */ `
-uniform vec3 cameraPosition;
 uniform int source;
 uniform sampler2D view;
 uniform samplerCube probe;
@@ -92,7 +91,7 @@ export class Speculars {
   private readonly geometries: BufferGeometry[] = [];
   private readonly shared: Record<'size' | 'boxLow' | 'boxHigh' | 'unit', IUniform>;
   private readonly diagonal: number;
-  private readonly base: Mesh | null;
+  private readonly bases: Mesh[];
   private probesAreOld = true;
   private numbers = false;
 
@@ -125,8 +124,8 @@ export class Speculars {
       for (const mesh of meshes) scene.add(mesh);
       this.parts.push({ part, meshes, uniforms, probe });
     }
-    this.base = this.glassBase(solution, layout);
-    if (this.base) scene.add(this.base);
+    this.bases = [true, false].flatMap((flat) => this.glassBase(solution, layout, flat));
+    for (const mesh of this.bases) scene.add(mesh);
   }
 
   /** Opaque ones, which have depths. */
@@ -148,7 +147,7 @@ export class Speculars {
         else mesh.material = numbers ? this.surfaces.numberMaterial() : (mesh.userData.mirror as RawShaderMaterial);
       }
     }
-    if (this.base) this.base.visible = !numbers;
+    for (const mesh of this.bases) mesh.visible = !numbers;
   }
 
   /** Renders what the coming picture reflects. `render` draws the scene from a camera to the target that is set. */
@@ -271,8 +270,8 @@ export class Speculars {
   private mirrorMesh(part: SpecularPart, uniforms: Record<string, IUniform>): Mesh {
     const curved = !part.plane;
     const material = this.surfaces.patchMaterial(
+      !isFlat(part.patches[0].patch),
       /* glsl */ `
-      ${patchFragment}
       in vec3 place;
       ${curved ? 'in vec3 up;' : 'uniform vec3 up;'}
       ${reflectionGlsl}
@@ -306,7 +305,7 @@ export class Speculars {
         precision highp float;
         precision highp int;
         in vec3 place, up;
-        uniform vec3 transmission;
+        uniform vec3 cameraPosition, transmission;
         out vec4 pixel;
         ${reflectionGlsl}
         void main() {
@@ -320,22 +319,23 @@ export class Speculars {
   }
 
   /** What glass reflects by itself, under its coat: it is added to what is seen through it. */
-  private glassBase(solution: Solution, layout: Layout): Mesh | null {
-    const placed = layout.patches.filter((p) => solution.materials[p.patch.material].transmission);
-    if (placed.length === 0) return null;
-    const material = this.surfaces.patchMaterial(
-      `${patchFragment}\nvoid main() { pixel = vec4(stored(leaving()), 1.0); }`);
+  private glassBase(solution: Solution, layout: Layout, flat: boolean): Mesh[] {
+    const placed = layout.patches.filter(
+      ({ patch }) => solution.materials[patch.material].transmission && isFlat(patch) === flat);
+    if (placed.length === 0) return [];
+    const material = this.surfaces.patchMaterial(!flat, plainMain);
     material.transparent = true;
     material.depthWrite = false;
     material.blending = CustomBlending;
     material.blendSrc = material.blendDst = OneFactor;
     const mesh = asMesh(this.surfaces.geometry(elementsOf(placed)), material);
     mesh.renderOrder = 1e6;
-    return mesh;
+    return [mesh];
   }
 
   dispose(): void {
     for (const { meshes } of this.parts) for (const m of meshes) (m.userData.mirror ?? m.material).dispose();
+    for (const { material } of this.bases) (material as RawShaderMaterial).dispose();
     for (const geometry of this.geometries) geometry.dispose();
     for (const { target } of [...this.views, ...this.probes]) target.dispose();
   }

@@ -1,5 +1,5 @@
 /**
- * Everything opaque that is no mirror: the patches in one draw call, and behind them the input's faces, black but for
+ * Everything opaque that is no mirror: the patches in two draw calls, flat and glossy, and behind them the input's faces, black but for
  * what they emit (docs/conventions.md#sides).
  *
  * Light is stored in units that make most of the scene about 1 (`unit`), so that half floats hold it well whatever
@@ -11,7 +11,8 @@ import {
 } from 'three';
 import type { Faces, Material, Solution } from '../solution/solution';
 import { categories, colourTexture, falseColourGlsl } from './colour_map';
-import { edgesOf, elementsOf, type Layout, type PlacedPatch } from './layout';
+import { edgesOf, elementsOf, isFlat, type Layout, type PlacedPatch } from './layout';
+import { kNodesInRow } from './lobe_textures';
 import { srgbGlsl } from './tone';
 
 /** Brighter light is cut here: halves end at 65504, and sums of samples have to stay below. */
@@ -21,34 +22,47 @@ const kBrightest = 60000;
 export interface PatchUniforms extends Record<string, IUniform> {
   coefficients: IUniform;
   coefficientUnit: IUniform;
-  nodeLight: IUniform;
+  /** Of NodeLight, by channel. */
+  redOfNodes: IUniform;
+  greenOfNodes: IUniform;
+  blueOfNodes: IUniform;
   emission: IUniform;
   flatCount: IUniform;
   unit: IUniform;
 }
 
-/** Corners of elements: position, light and weight of the node, what its material emits. `more` goes into main. */
-export const patchVertex = (declarations = '', more = '') => /* glsl */ `
+/**
+ * Corners of elements: light and weight of the node, what its material emits. With `glossy`, for patches whose light
+ * depends on the eye; without, for flat ones, which need none of that. `more` goes into main.
+ */
+const patchVertex = (glossy: boolean, declarations: string, more: string) => /* glsl */ `
 precision highp float;
 precision highp int;
 uniform mat4 modelViewMatrix, projectionMatrix;
 uniform highp sampler2DArray coefficients;
-uniform highp sampler2D nodeLight, emission;
+uniform highp sampler2D emission, redOfNodes, greenOfNodes, blueOfNodes;
 uniform float coefficientUnit;
 uniform int flatCount;
 in vec3 position;
 in vec2 state;                // row of the table of emission; 1: not hidden
-centroid out vec4 light;      // radiance times weight, weight
+centroid out vec4 light;      // radiance, 1; times the node's weight
 flat out vec3 emitted;
+${glossy ? 'centroid out vec3 at, redSlope, greenSlope, blueSlope;' : ''}
 ${declarations}
-vec3 lightOf(int slot) {
-  int i = slot - flatCount;
-  if (i >= 0) return texelFetch(nodeLight, ivec2(i & 1023, i >> 10), 0).rgb;
-  return texelFetch(coefficients, ivec3(slot & 2047, (slot >> 11) & 2047, slot >> 22), 0).rgb *
-         (coefficientUnit * ${Math.sqrt(1 / Math.PI)});  // Z_00
-}
 void main() {
-  light = vec4(lightOf(gl_VertexID), 1.0) * state.y;
+  int slot = gl_VertexID;
+  ${glossy ? `
+  int i = slot - flatCount;
+  ivec2 texel = ivec2(i % ${kNodesInRow}, i / ${kNodesInRow});
+  vec4 red = texelFetch(redOfNodes, texel, 0), green = texelFetch(greenOfNodes, texel, 0), blue = texelFetch(blueOfNodes, texel, 0);
+  vec3 radiance = vec3(red.a, green.a, blue.a);
+  redSlope = red.rgb * state.y;
+  greenSlope = green.rgb * state.y;
+  blueSlope = blue.rgb * state.y;
+  at = position;` : `
+  vec3 radiance = texelFetch(coefficients, ivec3(slot & 2047, (slot >> 11) & 2047, slot >> 22), 0).rgb *
+                  (coefficientUnit * ${Math.sqrt(1 / Math.PI)});  // Z_00`}
+  light = vec4(radiance, 1.0) * state.y;
   emitted = texelFetch(emission, ivec2(int(state.x), 0), 0).rgb;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   ${more}
@@ -56,24 +70,26 @@ void main() {
 `;
 
 /** `leaving()`: radiance of the surface itself. Hidden nodes have no weight; the negative is shown as 0. */
-export const patchFragment = /* glsl */ `
+const patchFragment = (glossy: boolean) => /* glsl */ `
 precision highp float;
 precision highp int;
 uniform float unit;
+uniform vec3 cameraPosition;
 centroid in vec4 light;
 flat in vec3 emitted;
+${glossy ? 'centroid in vec3 at, redSlope, greenSlope, blueSlope;' : ''}
 out vec4 pixel;
 vec3 leaving() {
-  vec3 reflected = light.a > 1e-6 ? max(light.rgb / light.a, 0.0) : vec3(0.0);
-  return reflected + emitted;
+  vec3 reflected = light.rgb;
+  ${glossy ? `
+  vec3 wo = normalize(cameraPosition - at);
+  reflected += vec3(dot(redSlope, wo), dot(greenSlope, wo), dot(blueSlope, wo));` : ''}
+  return (light.a > 1e-6 ? max(reflected / light.a, 0.0) : vec3(0.0)) + emitted;
 }
 vec3 stored(vec3 radiance) { return min(radiance * unit, ${kBrightest}.0); }
 `;
 
-const plainFragment = /* glsl */ `
-${patchFragment}
-void main() { pixel = vec4(stored(leaving()), 1.0); }
-`;
+export const plainMain = 'void main() { pixel = vec4(stored(leaving()), 1.0); }';
 
 function emissionTexture(materials: readonly Material[]): Texture {
   const data = new Float32Array(8 * materials.length + 8);
@@ -89,20 +105,20 @@ function emissionTexture(materials: readonly Material[]): Texture {
 
 export class Surfaces {
   readonly uniforms: PatchUniforms;
-  readonly patches: Mesh;
+  /** Flat ones, glossy ones. */
+  readonly patches: Mesh[];
   readonly backdrop: Mesh;
   /** Their depths alone, where the overlay is drawn. */
   readonly depths: Mesh[];
   private readonly attributes: Record<string, BufferAttribute>;
   private readonly geometries: BufferGeometry[] = [];
-  private readonly plain: RawShaderMaterial;
   private falseColours: RawShaderMaterial | null = null;
   private readonly scales = new Map<string, Texture>();
   private edges: LineSegments | null = null;
 
   constructor(
     solution: Solution, private readonly layout: Layout, shared: Pick<PatchUniforms, 'coefficients' | 'coefficientUnit'>,
-    nodeLight: Texture, unit: number, private readonly opaque: readonly PlacedPatch[],
+    nodeLight: readonly Texture[], unit: number, private readonly opaque: readonly PlacedPatch[],
   ) {
     const positions = new Float32Array(3 * layout.nodeCount), states = new Uint16Array(2 * layout.nodeCount);
     for (const { patch, firstSlot } of layout.patches) {
@@ -115,23 +131,29 @@ export class Surfaces {
     this.attributes = { position: new BufferAttribute(positions, 3), state: new BufferAttribute(states, 2) };
     this.uniforms = {
       ...shared,
-      nodeLight: { value: nodeLight },
+      redOfNodes: { value: nodeLight[0] },
+      greenOfNodes: { value: nodeLight[1] },
+      blueOfNodes: { value: nodeLight[2] },
       emission: { value: emissionTexture(solution.materials) },
       flatCount: { value: layout.flatCount },
       unit: { value: unit },
     };
-    this.plain = this.patchMaterial(plainFragment);
-    this.patches = asMesh(this.geometry(elementsOf(opaque)), this.plain);
-    const faces = solution.faces ? solution.faces : null;
-    const depthOnly = (side: typeof FrontSide | typeof DoubleSide) => depthMaterial(side);
-    const patchDepths = asMesh(this.patches.geometry, depthOnly(FrontSide));
-    if (faces) {
-      this.backdrop = asMesh(this.keep(faceGeometry(faces, solution.materials)), backdropMaterial(this.uniforms));
-    } else {
+    this.patches = [true, false].map((flat) => {
+      const mesh = asMesh(
+        this.geometry(elementsOf(opaque.filter((p) => isFlat(p.patch) === flat))), this.patchMaterial(!flat, plainMain));
+      mesh.userData.light = mesh.material;
+      return mesh;
+    });
+    const { faces } = solution;
+    this.backdrop = faces
+      ? asMesh(this.keep(faceGeometry(faces, solution.materials)), backdropMaterial(this.uniforms))
       // Not all of what is black, but the backs of what is lit.
-      this.backdrop = asMesh(this.patches.geometry, backsMaterial());
-    }
-    this.depths = [patchDepths, asMesh(this.backdrop.geometry, depthOnly(faces ? DoubleSide : DoubleSide))];
+      : asMesh(this.geometry(elementsOf(opaque)), backsMaterial());
+    const inFront = depthMaterial(FrontSide);
+    this.depths = [
+      asMesh(this.backdrop.geometry, depthMaterial(DoubleSide)),
+      ...this.patches.map((mesh) => asMesh(mesh.geometry, inFront)),
+    ];
     this.seeThrough(false);
   }
 
@@ -151,7 +173,7 @@ export class Surfaces {
 
   /** Backs without light let look into rooms from outside, or not. */
   seeThrough(backs: boolean): void {
-    for (const mesh of [this.backdrop, this.depths[1]]) {
+    for (const mesh of [this.backdrop, this.depths[0]]) {
       const material = mesh.material as RawShaderMaterial;
       if (material.uniforms.seeThrough) material.uniforms.seeThrough.value = backs;
       else mesh.visible = !backs;
@@ -160,7 +182,9 @@ export class Surfaces {
 
   /** Numbers by slot in place of light; null: light. */
   showNumbers(values: Float32Array | null): void {
-    this.patches.material = values ? this.numberMaterial() : this.plain;
+    for (const mesh of this.patches) {
+      mesh.material = values ? this.numberMaterial() : (mesh.userData.light as RawShaderMaterial);
+    }
     if (values) this.setAttribute('number', new BufferAttribute(values, 1));
   }
 
@@ -177,12 +201,8 @@ export class Surfaces {
 
   /** Material of patches in false colours: what it writes are colours of the display, decoded. */
   numberMaterial(): RawShaderMaterial {
-    return (this.falseColours ??= this.patchMaterial(/* glsl */ `
-      precision highp float;
-      centroid in vec4 light;
-      flat in vec3 emitted;
+    return (this.falseColours ??= this.patchMaterial(false, /* glsl */ `
       centroid in float shownNumber;
-      out vec4 pixel;
       ${falseColourGlsl} ${srgbGlsl}
       void main() { pixel = vec4(decodeSrgb(falseColour(shownNumber)), 1.0); }`,
       'in float number;\ncentroid out float shownNumber;', 'shownNumber = number;',
@@ -207,12 +227,13 @@ export class Surfaces {
     return this.edges;
   }
 
+  /** `main` writes `pixel`, with the help of `leaving()` and `stored()`. */
   patchMaterial(
-    fragmentShader: string, declarations = '', more = '', uniforms: Record<string, IUniform> = {},
+    glossy: boolean, main: string, declarations = '', more = '', uniforms: Record<string, IUniform> = {},
   ): RawShaderMaterial {
     return new RawShaderMaterial({
-      glslVersion: GLSL3, side: FrontSide, blending: NoBlending, vertexShader: patchVertex(declarations, more), fragmentShader,
-      uniforms: { ...this.uniforms, ...uniforms },
+      glslVersion: GLSL3, side: FrontSide, blending: NoBlending, uniforms: { ...this.uniforms, ...uniforms },
+      vertexShader: patchVertex(glossy, declarations, more), fragmentShader: patchFragment(glossy) + main,
     });
   }
 
@@ -226,7 +247,7 @@ export class Surfaces {
     for (const texture of this.scales.values()) texture.dispose();
     (this.uniforms.emission.value as Texture).dispose();
     for (const mesh of [this.backdrop, ...this.depths]) (mesh.material as RawShaderMaterial).dispose();
-    this.plain.dispose();
+    for (const mesh of this.patches) (mesh.userData.light as RawShaderMaterial).dispose();
     this.falseColours?.dispose();
     (this.edges?.material as RawShaderMaterial | undefined)?.dispose();
   }
