@@ -1,4 +1,4 @@
-import { Matrix4, PerspectiveCamera, Plane, Vector4 } from 'three';
+import { Matrix4, PerspectiveCamera, Plane, Vector3, Vector4 } from 'three';
 
 /** x -> what a mirror shows at x. */
 export function reflectionIn({ normal: n, constant }: Plane): Matrix4 {
@@ -20,17 +20,21 @@ export class MirroredCamera extends PerspectiveCamera {
     this.matrixAutoUpdate = this.matrixWorldAutoUpdate = false;
   }
 
-  /** `plane` has the eye on its positive side; what is less than `gap` metres before it is left out with what is
-   *  behind it. */
-  reflect(camera: PerspectiveCamera, plane: Plane, gap: number): void {
+  /** `plane` has the eye on its positive side. What is behind it is left out, but for `slack` metres: else the sill
+   *  of a mirror would be a black line. `reach`: metres from the mirrored eye to the end of the scene. */
+  reflect(camera: PerspectiveCamera, plane: Plane, slack: number, reach: (eye: Vector3) => number): void {
     this.matrixWorld.copy(reflectionIn(plane)).multiply(camera.matrixWorld).multiply(flip);
     this.matrixWorldInverse.copy(this.matrixWorld).invert();
-    this.projectionMatrix.copy(camera.projectionMatrix);
+    this.fov = camera.fov;
+    this.aspect = camera.aspect;
+    this.near = camera.near;
+    this.far = reach(new Vector3().setFromMatrixPosition(this.matrixWorld));
+    this.updateProjectionMatrix();
 
     // The near plane is put into the mirror (E. Lengyel, "Oblique View Frustum Depth Projection and Clipping",
     // J. Game Development 1(2), 2005, eq. 7): nothing between eye and mirror is seen, at no cost.
     const here = plane.clone();
-    here.constant -= gap;
+    here.constant += slack;
     here.applyMatrix4(this.matrixWorldInverse);
     const p = this.projectionMatrix.elements;
     const clip = new Vector4(here.normal.x, here.normal.y, here.normal.z, here.constant);

@@ -15,7 +15,7 @@
 import {
   AddEquation, BackSide, BufferAttribute, BufferGeometry, CubeCamera, CustomBlending, DoubleSide, DstColorFactor,
   FrontSide, Frustum, GLSL3, HalfFloatType, LinearFilter, Matrix4, Mesh, OneFactor, Plane, RawShaderMaterial, RGBAFormat,
-  Scene, Vector2, Vector3, WebGLCubeRenderTarget, WebGLRenderTarget, ZeroFactor, type Box3, type IUniform,
+  Scene, Vector2, Vector3, Vector4, WebGLCubeRenderTarget, WebGLRenderTarget, ZeroFactor, type Box3, type IUniform,
   type PerspectiveCamera, type Side, type WebGLRenderer,
 } from 'three';
 import type { Solution } from '../solution/solution';
@@ -27,6 +27,8 @@ import { asMesh, plainMain, type Surfaces } from './surfaces';
 const kMostViews = 4;
 const kMostProbes = 8;
 const kProbePixels = 128;
+/** What lies behind a mirror by less is not cut off, in scene diagonals. */
+const kSlack = 2e-5;
 
 enum Source { none, view, probe }
 
@@ -62,8 +64,10 @@ vec3 fresnel(vec3 position, vec3 normal) {
 vec3 lookup(vec3 position, vec3 normal) {
   if (source == ${Source.none}) return vec3(0.0);
   if (source == ${Source.view}) {
-    // As MirroredCamera has it: flipped, pixel by pixel.
-    return texelFetch(view, ivec2(size.x - gl_FragCoord.x, gl_FragCoord.y), 0).rgb;
+    // As MirroredCamera has it: flipped, pixel by pixel. At the mirror's rim some of a pixel's samples look past it, to
+    // where nothing is drawn.
+    vec4 seen = texelFetch(view, ivec2(size.x - gl_FragCoord.x, gl_FragCoord.y), 0);
+    return seen.a > 0.0 ? seen.rgb / seen.a : vec3(0.0);
   }
   vec3 incident = position - cameraPosition, n = normalize(normal);
   vec3 r = reflect(normalize(incident), n);
@@ -103,9 +107,11 @@ export class Speculars {
   }
 
   private constructor(
-    parts: SpecularPart[], solution: Solution, layout: Layout, private readonly surfaces: Surfaces, scene: Scene, box: Box3,
+    parts: SpecularPart[], solution: Solution, layout: Layout, private readonly surfaces: Surfaces, scene: Scene,
+    private readonly box: Box3,
   ) {
     this.diagonal = box.min.distanceTo(box.max);
+    surfaces.letMirrorsThrough(2 * kSlack * this.diagonal);
     this.shared = {
       size: { value: new Vector2() }, boxLow: { value: box.min }, boxHigh: { value: box.max }, unit: surfaces.uniforms.unit,
     };
@@ -158,8 +164,13 @@ export class Speculars {
     if (this.numbers) return;
     if (this.probesAreOld) this.renderProbes(renderer, scene, beforeEye);
     (this.shared.size.value as Vector2).set(width, height);
-    for (const p of this.parts) p.uniforms.source.value = Source.probe;
+    for (const p of this.parts) {
+      p.uniforms.source.value = Source.probe;
+      p.uniforms.view.value = null;
+    }
 
+    const { box } = this, nowhere = new Vector4(0, 0, 0, 1e30);
+    const mirrorPlane = (this.surfaces.backdrop.material as RawShaderMaterial).uniforms.mirrorPlane?.value as Vector4 | undefined;
     const chosen = this.choose(camera);
     chosen.forEach(({ plane, parts }, i) => {
       const view = (this.views[i] ??= {
@@ -167,7 +178,9 @@ export class Speculars {
         target: new WebGLRenderTarget(width, height, { format: RGBAFormat, type: HalfFloatType, samples }),
       });
       view.target.setSize(width, height);
-      view.camera.reflect(camera, plane, 5e-5 * this.diagonal);
+      const centre = box.getCenter(new Vector3());
+      view.camera.reflect(camera, plane, kSlack * this.diagonal, (eye) => eye.distanceTo(centre) + this.diagonal);
+      mirrorPlane?.set(plane.normal.x, plane.normal.y, plane.normal.z, plane.constant);
       for (const { meshes } of parts) for (const mesh of meshes) mesh.visible = false;
       const eye = new Vector3().setFromMatrixPosition(view.camera.matrixWorld);
       beforeEye(eye);
@@ -177,6 +190,7 @@ export class Speculars {
       renderer.render(scene, view.camera);
       for (const { meshes } of parts) for (const mesh of meshes) mesh.visible = true;
     });
+    mirrorPlane?.copy(nowhere);
     // Only now: in a view other planes show their probes.
     chosen.forEach(({ parts }, i) => {
       for (const { uniforms } of parts) {

@@ -7,7 +7,7 @@
  */
 import {
   BackSide, BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, FrontSide, GLSL3, LineSegments, Mesh,
-  NearestFilter, NoBlending, RawShaderMaterial, RGBAFormat, Vector2, type IUniform, type Texture,
+  NearestFilter, NoBlending, RawShaderMaterial, RGBAFormat, Vector2, Vector4, type IUniform, type Texture,
 } from 'three';
 import type { Faces, Material, Solution } from '../solution/solution';
 import { categories, colourTexture, falseColourGlsl } from './colour_map';
@@ -180,11 +180,22 @@ export class Surfaces {
     }
   }
 
+  /** From now on the eye behind a mirror (`mirrorPlane`) looks through the mirror's own black back: through backs less
+   *  than `slack` metres from the plane. */
+  letMirrorsThrough(slack: number): void {
+    const material = this.backdrop.material as RawShaderMaterial;
+    if (!material.uniforms.mirrorPlane) return;
+    material.defines.MIRROR_SLACK = slack.toExponential();
+    material.needsUpdate = true;
+  }
+
   /** Numbers by slot in place of light; null: light. */
   showNumbers(values: Float32Array | null): void {
     for (const mesh of this.patches) {
       mesh.material = values ? this.numberMaterial() : (mesh.userData.light as RawShaderMaterial);
     }
+    const backs = (this.backdrop.material as RawShaderMaterial).uniforms.numbers;
+    if (backs) backs.value = values !== null;
     if (values) this.setAttribute('number', new BufferAttribute(values, 1));
   }
 
@@ -283,7 +294,10 @@ const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits
 function backdropMaterial(shared: PatchUniforms): RawShaderMaterial {
   return new RawShaderMaterial({
     glslVersion: GLSL3, side: DoubleSide, blending: NoBlending, ...behind,
-    uniforms: { emission: shared.emission, unit: shared.unit, seeThrough: { value: false }, numbers: { value: false } },
+    uniforms: {
+      emission: shared.emission, unit: shared.unit, seeThrough: { value: false }, numbers: { value: false },
+      mirrorPlane: { value: new Vector4(0, 0, 0, 1e30) },
+    },
     vertexShader: /* glsl */ `
       precision highp float;
       precision highp int;
@@ -291,8 +305,15 @@ function backdropMaterial(shared: PatchUniforms): RawShaderMaterial {
       in vec3 position;
       in float row;
       flat out int emitter;
+      #ifdef MIRROR_SLACK
+        uniform vec4 mirrorPlane;
+        out float toMirror;
+      #endif
       void main() {
         emitter = int(row);
+        #ifdef MIRROR_SLACK
+          toMirror = dot(mirrorPlane, vec4(position, 1.0));
+        #endif
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: /* glsl */ `
@@ -302,12 +323,18 @@ function backdropMaterial(shared: PatchUniforms): RawShaderMaterial {
       uniform float unit;
       uniform bool seeThrough, numbers;
       flat in int emitter;
+      #ifdef MIRROR_SLACK
+        in float toMirror;
+      #endif
       out vec4 pixel;
       void main() {
         vec3 emitted = texelFetch(emission, ivec2(emitter + (gl_FrontFacing ? 0 : 1), 0), 0).rgb;
         bool black = emitted == vec3(0.0);
         if (seeThrough && black && !gl_FrontFacing) discard;
-        pixel = black || numbers ? vec4(0.0) : vec4(min(emitted * unit, ${kBrightest}.0), 1.0);
+        #ifdef MIRROR_SLACK
+          if (!gl_FrontFacing && abs(toMirror) < MIRROR_SLACK) discard;
+        #endif
+        pixel = vec4(numbers ? vec3(0.0) : min(emitted * unit, ${kBrightest}.0), 1.0);
       }`,
   });
 }
