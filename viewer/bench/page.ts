@@ -1,4 +1,5 @@
 /** What measure.mjs drives: a stage without panels. */
+import * as THREE from 'three';
 import { Vector3 } from 'three';
 import { Picture } from '../src/draw/picture';
 import { loadSolution } from '../src/solution/load';
@@ -18,4 +19,4 @@ async function open(address: string) {
   return { solution, stage, look };
 }
 
-Object.assign(window, { open_: open, Picture });
+Object.assign(window, { open_: open, Picture, THREE });

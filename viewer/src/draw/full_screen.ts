@@ -17,11 +17,6 @@ export class FullScreen {
   draw(renderer: WebGLRenderer): void {
     renderer.render(this.mesh, camera);
   }
-
-  dispose(): void {
-    this.mesh.geometry.dispose();
-    this.material.dispose();
-  }
 }
 
 export const fullScreenVertex = /* glsl */ `

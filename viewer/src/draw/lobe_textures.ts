@@ -36,10 +36,6 @@ export class LobeTextures {
       degree: { value: kMostDegree },
     };
   }
-
-  dispose(): void {
-    for (const key of ['coefficients', 'table', 'steps'] as const) (this.uniforms[key].value as Texture).dispose();
-  }
 }
 
 /** Exact texels, no mipmaps. What is uploaded is no longer needed here: Picture makes everything anew if the GPU

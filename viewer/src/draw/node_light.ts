@@ -80,9 +80,4 @@ export class NodeLight {
     renderer.setRenderTarget(this.target);
     this.pass.draw(renderer);
   }
-
-  dispose(): void {
-    this.target.dispose();
-    this.pass.dispose();
-  }
 }

@@ -72,9 +72,8 @@ export class Picture {
     this.resident = build();
     canvas.addEventListener('webglcontextlost', () => (this.lost = true));
     canvas.addEventListener('webglcontextrestored', () => {
-      // three has begun anew by now. What was sent is kept nowhere but in the solution: it is made again.
+      // three has begun anew by now, and what the GPU held is gone. It is kept nowhere else: it is made again.
       this.lost = false;
-      this.resident.dispose();
       this.resident = build();
       onRestored();
     });
@@ -88,7 +87,9 @@ export class Picture {
   }
 
   range(quantity: Quantity): { low: number; high: number } {
-    return percentiles(this.numbers(quantity));
+    const values = this.numbers(quantity);
+    // Diffuse nodes have no negative part, and would be most of them.
+    return percentiles(quantity === 'negative' ? values.filter((v) => v > 0) : values);
   }
 
   resize(width: number, height: number, pixelRatio: number): void {

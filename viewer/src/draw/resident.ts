@@ -96,12 +96,4 @@ export class Resident {
     if (wires) this.over.remove(wires);
     if (overlay) this.over.remove(overlay);
   }
-
-  dispose(): void {
-    this.tone.dispose();
-    this.nodeLight.dispose();
-    this.lobes.dispose();
-    this.surfaces.dispose();
-    this.speculars?.dispose();
-  }
 }

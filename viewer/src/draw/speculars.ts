@@ -346,13 +346,6 @@ export class Speculars {
     mesh.renderOrder = 1e6;
     return [mesh];
   }
-
-  dispose(): void {
-    for (const { meshes } of this.parts) for (const m of meshes) (m.userData.mirror ?? m.material).dispose();
-    for (const { material } of this.bases) (material as RawShaderMaterial).dispose();
-    for (const geometry of this.geometries) geometry.dispose();
-    for (const { target } of [...this.views, ...this.probes]) target.dispose();
-  }
 }
 
 function normalsBySlot(layout: Layout): BufferAttribute {

@@ -118,7 +118,7 @@ export class Surfaces {
 
   constructor(
     solution: Solution, private readonly layout: Layout, shared: Pick<PatchUniforms, 'coefficients' | 'coefficientUnit'>,
-    nodeLight: readonly Texture[], unit: number, private readonly opaque: readonly PlacedPatch[],
+    nodeLight: readonly Texture[], unit: number, opaque: readonly PlacedPatch[],
   ) {
     const positions = new Float32Array(3 * layout.nodeCount), states = new Uint16Array(2 * layout.nodeCount);
     for (const { patch, firstSlot } of layout.patches) {
@@ -225,14 +225,14 @@ export class Surfaces {
     if (this.edges) return this.edges;
     const geometry = this.keep(new BufferGeometry());
     const normals = new Int8Array(4 * this.layout.nodeCount);
-    for (const { patch, firstSlot } of this.opaque) {
+    for (const { patch, firstSlot } of this.layout.patches) {
       for (let i = 0; i < patch.normals.length / 3; ++i) {
         for (let c = 0; c < 3; ++c) normals[4 * (firstSlot + i) + c] = Math.round(127 * patch.normals[3 * i + c]);
       }
     }
     geometry.setAttribute('position', this.attributes.position);
     geometry.setAttribute('normal', new BufferAttribute(normals, 4, true));
-    geometry.setIndex(new BufferAttribute(edgesOf(elementsOf(this.opaque), this.layout.nodeCount), 1));
+    geometry.setIndex(new BufferAttribute(edgesOf(elementsOf(this.layout.patches), this.layout.nodeCount), 1));
     this.edges = new LineSegments(geometry, wireMaterial());
     this.edges.frustumCulled = false;
     return this.edges;
@@ -251,16 +251,6 @@ export class Surfaces {
   private keep(geometry: BufferGeometry): BufferGeometry {
     this.geometries.push(geometry);
     return geometry;
-  }
-
-  dispose(): void {
-    for (const geometry of this.geometries) geometry.dispose();
-    for (const texture of this.scales.values()) texture.dispose();
-    (this.uniforms.emission.value as Texture).dispose();
-    for (const mesh of [this.backdrop, ...this.depths]) (mesh.material as RawShaderMaterial).dispose();
-    for (const mesh of this.patches) (mesh.userData.light as RawShaderMaterial).dispose();
-    this.falseColours?.dispose();
-    (this.edges?.material as RawShaderMaterial | undefined)?.dispose();
   }
 }
 

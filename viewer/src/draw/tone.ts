@@ -79,9 +79,4 @@ export class Tone {
     }
     this.pass.draw(renderer);
   }
-
-  dispose(): void {
-    this.colours.dispose();
-    this.pass.dispose();
-  }
 }
