@@ -1,4 +1,5 @@
 /** A page of this folder in a browser without a window, its GPU in software (SwiftShader). CHROMIUM: its program. */
+import { readFileSync, readdirSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import http from 'node:http';
 import { build } from 'esbuild';
@@ -17,15 +18,36 @@ export async function openPage(solution, { width = 1200, height = 800, before = 
     else response.writeHead(404).end();
   });
   await new Promise((done) => server.listen(0, '127.0.0.1', done));
-  const browser = await chromium.launch({
+  const launched = await chromium.launchServer({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
   });
+  const browser = await chromium.connect(launched.wsEndpoint());
   const page = await browser.newPage({ viewport: { width, height } });
   const messages = [];
   page.on('console', (m) => messages.push(m.text()));
   page.on('pageerror', (e) => messages.push(e.message));
   await page.goto(`http://127.0.0.1:${server.address().port}/`);
   await page.evaluate(async () => Object.assign(window, await window.open_('/solution.glb')));
-  return { page, messages, close: async () => { await browser.close(); server.close(); } };
+  const pid = launched.process().pid;
+  return { page, messages, processorMs: () => processorMs(pid), close: async () => { await launched.close(); server.close(); } };
+}
+
+/** Processor time that a process and its descendants have used (Linux): what a busy machine does not inflate much. */
+function processorMs(root) {
+  const stats = readdirSync('/proc').filter((name) => /^\d+$/.test(name)).flatMap((pid) => {
+    try {
+      const text = readFileSync(`/proc/${pid}/stat`, 'latin1');
+      const fields = text.slice(text.lastIndexOf(')') + 2).split(' ');
+      return [{ pid: Number(pid), parent: Number(fields[1]), ticks: Number(fields[11]) + Number(fields[12]) }];
+    } catch {
+      return [];
+    }
+  });
+  const family = new Set([root]);
+  for (let before = 0; before < family.size; ) {
+    before = family.size;
+    for (const { pid, parent } of stats) if (family.has(parent)) family.add(pid);
+  }
+  return 10 * stats.filter(({ pid }) => family.has(pid)).reduce((sum, { ticks }) => sum + ticks, 0);
 }

@@ -3,8 +3,9 @@
  *
  *     node bench/frames.mjs SOLUTION.glb... [--size 1200x800] [--frames 9] [--precision half|float]
  *
- * Milliseconds are medians. "frame": the camera has moved; "same eye": only exposure has changed, so that no lobe is
- * evaluated; their difference is what lobes cost. Bytes are those sent as textures and buffers before the first frame.
+ * "moved": the camera has; "still": it has not, so that no lobe is evaluated; their difference is what lobes cost. `ms` is a median,
+ * `processorMs` the mean processor time of all the browser's processes, which a busy machine inflates less. Bytes are
+ * those sent as textures and buffers.
  */
 import { parseArgs } from 'node:util';
 import { openPage } from './browser.mjs';
@@ -16,37 +17,47 @@ const { values, positionals } = parseArgs({
 });
 const [width, height] = values.size.split('x').map(Number);
 for (const file of positionals) {
-  const { page, messages, close } = await openPage(file, { width, height });
-  const result = await page.evaluate(async ({ frames, precision }) => {
+  const { page, messages, processorMs, close } = await openPage(file, { width, height });
+  await page.evaluate((precision) => {
     const { stage, solution, Picture } = window;
-    const canvas = Object.assign(document.createElement('canvas'), { width: 1, height: 1 });
-    const picture = precision === 'half' ? stage.picture : new Picture(canvas, solution, () => {}, precision);
-    if (picture !== stage.picture) picture.resize(innerWidth, innerHeight, 1);
-    const gl = (picture === stage.picture ? stage.canvas : canvas).getContext('webgl2');
-    const time = (change) => {
-      const all = [];
-      for (let i = -2; i < frames; ++i) {
-        change(i);
+    if (precision === 'half') {
+      window.picture = stage.picture;
+      window.gl = stage.canvas.getContext('webgl2');
+    } else {
+      const canvas = document.createElement('canvas');
+      window.picture = new Picture(canvas, solution, () => {}, precision);
+      window.picture.resize(innerWidth, innerHeight, 1);
+      window.gl = canvas.getContext('webgl2');
+    }
+    window.run = (frames, step) => {
+      const { picture, stage, gl } = window, uploaded = picture.stats.uploadedBytes, times = [];
+      for (let i = 0; i < frames; ++i) {
+        stage.camera.position.x += step;
         const start = performance.now();
         picture.draw(stage.camera, stage.settings, null);
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-        if (i >= 0) all.push(performance.now() - start);
+        times.push(performance.now() - start);
       }
-      return all.sort((a, b) => a - b)[Math.floor(all.length / 2)];
+      times.sort((a, b) => a - b);
+      return { ms: Math.round(times[frames >> 1]), uploaded: picture.stats.uploadedBytes - uploaded };
     };
-    const bytes = picture.stats.uploadedBytes;
-    const frame = time((i) => { stage.camera.position.x += 1e-3 * i; stage.camera.updateMatrixWorld(); });
-    const moved = picture.stats.uploadedBytes;
-    time((i) => { stage.camera.position.x += 1e-3 * i; stage.camera.updateMatrixWorld(); });
-    const still = time((i) => stage.set({ exposure: 0.01 * i }));
+    window.run(2, 1e-3);
+  }, values.precision);
+  const measure = async (step) => {
+    const before = processorMs();
+    const result = await page.evaluate(([frames, step]) => window.run(frames, step), [Number(values.frames), step]);
+    return { ...result, processorMs: Math.round((processorMs() - before) / Number(values.frames)) };
+  };
+  const moved = await measure(1e-3), still = await measure(0);
+  const scene = await page.evaluate(() => {
+    const { solution, picture } = window;
     return {
-      nodes: solution.nodeCount, glossy: solution.patches.reduce((n, p) => n + (p.lobes?.lMax > 0 ? p.positions.length / 3 : 0), 0),
-      elements: solution.elementCount, frame: +frame.toFixed(1), sameEye: +still.toFixed(1),
-      bytes: picture.stats.uploadedBytes, bytesPerNode: +(picture.stats.uploadedBytes / solution.nodeCount).toFixed(1),
-      uploadedWhileMoving: picture.stats.uploadedBytes - moved, drawCalls: picture.stats.drawCalls, before: bytes,
+      nodes: solution.nodeCount, elements: solution.elementCount,
+      glossy: solution.patches.reduce((n, p) => n + (p.lobes?.lMax > 0 ? p.positions.length / 3 : 0), 0),
+      drawCalls: picture.stats.drawCalls, bytesANode: Math.round(picture.stats.uploadedBytes / solution.nodeCount),
     };
-  }, { frames: Number(values.frames), precision: values.precision });
-  console.log(file.split('/').pop(), values.precision, JSON.stringify(result));
+  });
+  console.log(file.split('/').pop(), values.precision, JSON.stringify({ ...scene, moved, still }));
   for (const m of messages.filter((m) => !/404|GPU stall/.test(m)).slice(0, 5)) console.log('  ', m);
   await close();
 }
