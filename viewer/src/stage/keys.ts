@@ -3,7 +3,7 @@
 export interface Key {
   /** As event.key says it; letters in the case that Shift makes of them. */
   keys: readonly string[];
-  /** For people; each between + or / is drawn as a key. */
+  /** For people, keys between " + " and " / " and blanks; empty: said with another. */
   shown: string;
   does: string;
   /** None: said in the help, done by Controls. */
