@@ -104,7 +104,7 @@ async function titled<T>(title: string, work: () => Promise<T>): Promise<T> {
     return await work();
   } catch (error) {
     const why = error instanceof Problem ? error.message : `cannot be read: ${(error as Error).message ?? error}`;
-    throw new Problem(why.startsWith(title) ? why : `${title}: ${why}`);
+    throw new Problem(`${title}: ${why}`);
   }
 }
 

@@ -66,19 +66,19 @@ const rows: readonly Row[] = [
     },
   },
   {
-    name: 'Peak towards', unit: 'θ, φ; in the world', figure: 'peakDirection',
+    name: 'Direction', unit: 'of the peak: θ, φ; world', figure: 'peakDirection',
     of: (i) => {
       if (!i.figures) return null;
       const { peak } = i.figures, world = toWorld(i.frame, peak.direction);
       return { raw: world, words: `${peak.thetaDegrees.toFixed(1)}°, ${peak.phiDegrees.toFixed(1)}°`, small: vector(world, kBetween) };
     },
   },
-  { name: 'Negative part', unit: 'of the flux', figure: 'negative', of: (i) => i.figures && { raw: i.figures.negative, words: percent(i.figures.negative) } },
+  { name: 'Negative', unit: 'share of the flux', figure: 'negative', of: (i) => i.figures && { raw: i.figures.negative, words: percent(i.figures.negative) } },
   {
     name: 'Degree', figure: 'lMax', unit: 'shown, of l_max',
     of: (i) => i.whole && i.shown && { raw: i.whole.lMax, words: i.shown.lMax < i.whole.lMax ? `${i.shown.lMax} of ${i.whole.lMax}` : String(i.whole.lMax) },
   },
-  { name: 'Error of the cut', unit: 'relative, L2', figure: 'error', of: (i) => i.whole && { raw: i.error, words: percent(i.error) } },
+  { name: 'Cut error', unit: 'relative, L2', figure: 'error', of: (i) => i.whole && { raw: i.error, words: percent(i.error) } },
   { name: 'Position', unit: 'm', figure: 'position', of: (i) => ({ raw: i.position, words: h('span', { className: 'triple' }, i.position.map(metres).join(kBetween)) }) },
   { name: 'Normal', figure: 'normal', of: (i) => ({ raw: i.frame.z, words: h('span', { className: 'triple' }, vector(i.frame.z, kBetween)) }) },
 ];
@@ -153,8 +153,8 @@ export class Inspector {
   /** Brings it into the panel's view, where that is small. */
   reveal(): void {
     const panel = this.element.parentElement!;
-    const top = this.element.offsetTop - panel.offsetTop;
-    if (panel.clientHeight < 0.5 * window.innerHeight) panel.scrollTo({ top });
+    const top = this.element.getBoundingClientRect().top - panel.getBoundingClientRect().top;
+    if (panel.clientHeight < 0.5 * window.innerHeight) panel.scrollBy({ top });
   }
 
   followSettings(): void {

@@ -41,7 +41,7 @@ export class PicturePanel {
     this.show = h('select', {
       id: 'show', onchange: () => onShow(this.show.value === '' ? null : (this.show.value as Quantity)),
     }, h('option', { value: '' }, 'the picture'), ...quantities.map((quantity) => {
-      const why = whyNot(solution, quantity);
+      const why = whyNot(stage, quantity);
       return h('option', { value: quantity, disabled: why !== null, title: why ?? undefined },
         quantityTexts[quantity].name + (why ? ' (not in this file)' : ''));
     }));
