@@ -58,7 +58,7 @@ export class LobeInPlace {
     const line = (opacity: number) =>
       new LineBasicMaterial({ color: kGhostColour, transparent: true, opacity, depthWrite: false });
     this.lines = new LineSegments(new BufferGeometry(), line(0.3));
-    this.ghost = new LineSegments(new BufferGeometry(), line(0.28));
+    this.ghost = new LineSegments(new BufferGeometry(), line(0.16));
     this.object.add(this.surface, this.lines, this.ghost);
     for (const part of this.object.children) part.frustumCulled = false;
     this.object.matrixAutoUpdate = false;

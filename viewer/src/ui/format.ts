@@ -42,6 +42,12 @@ export function vector(v: readonly number[], between = ', '): string {
   return v.map(metres).join(between);
 }
 
+/** Of a tick: without zeros at the end. */
+export function plain(value: number): string {
+  const text = number(value);
+  return /^[−\d]+\.\d+$/.test(text) ? text.replace(/\.?0+$/, '') : text.replace(/\.0+·/, '·');
+}
+
 /** Ticks at round numbers, about `count` of them, from low to high. */
 export function ticks(low: number, high: number, logarithmic: boolean, count = 5): number[] {
   if (!(high > low)) return [];
@@ -50,7 +56,11 @@ export function ticks(low: number, high: number, logarithmic: boolean, count = 5
     const step = Math.max(1, Math.ceil((to - from) / count));
     const out: number[] = [];
     for (let e = from; e <= to; e += step) out.push(10 ** e);
-    if (out.length >= 2) return out;
+    if (out.length >= 3) return out;
+    // Less than three powers of ten: 1, 2 and 5 of each.
+    const finer = [from - 1, from, to, to + 1].flatMap((e) => [1, 2, 5].map((s) => Number(`${s}e${e}`)))
+      .filter((v, i, all) => v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9) && all.indexOf(v) === i);
+    if (finer.length >= 2) return finer;
     return [low, Math.sqrt(low * high), high].map((v) => Number(v.toPrecision(2)));
   }
   const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));

@@ -3,7 +3,7 @@ import type { FalseColour, Quantity } from '../stage/settings';
 import type { Stage } from '../stage/stage';
 import { h } from './dom';
 import { categories, colourAt, rangeOf, type Colour } from './drawing';
-import { number, ticks } from './format';
+import { plain, ticks } from './format';
 import { quantityTexts } from './quantity_texts';
 
 const css = ([r, g, b]: Colour) => `rgb(${[r, g, b].map((v) => Math.round(255 * v)).join(' ')})`;
@@ -17,8 +17,14 @@ const kLeastOfLog = 1e-3;
 export function scaleFor(
   stage: Stage, quantity: Quantity, given: { low?: number; high?: number; logarithmic?: boolean } = {},
 ): FalseColour {
-  const suits = rangeOf(stage, quantity);
+  const suits = rounded(rangeOf(stage, quantity));
   return sound({ quantity, low: given.low ?? suits.low, high: given.high ?? suits.high, logarithmic: given.logarithmic ?? false });
+}
+
+/** Two digits are enough of a range that was measured; unless that makes it empty. */
+function rounded({ low, high }: { low: number; high: number }): { low: number; high: number } {
+  const [least, most] = [low, high].map((v) => Number(v.toPrecision(2)));
+  return least < most ? { low: least, high: most } : { low, high };
 }
 
 function sound(scale: FalseColour): FalseColour {
@@ -74,7 +80,7 @@ export class Legend {
     const place = (v: number) =>
       logarithmic ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low);
     this.marks.replaceChildren(...ticks(low, high, logarithmic).map((v) =>
-      h('span', { style: `left: ${(100 * place(v)).toFixed(2)}%` }, number(v, 3).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, ''))));
+      h('span', { style: `left: ${(100 * place(v)).toFixed(2)}%` }, plain(v))));
   }
 
   private end(label: string, id: string): HTMLInputElement {

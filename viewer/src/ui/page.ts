@@ -39,6 +39,7 @@ export class Page {
   private readonly size: number;
   private readonly away = new AbortController();
   private pinned = false;
+  private followed: object | null = null;
   private written = '';
   private writing = 0;
 
@@ -139,9 +140,13 @@ export class Page {
   }
 
   private follow(): void {
-    this.picture.followSettings();
-    this.inspector.followSettings();
-    this.legend.followSettings();
+    // Settings are a new object whenever they change; most of the time only the eye moves.
+    if (this.stage.settings !== this.followed) {
+      this.followed = this.stage.settings;
+      this.picture.followSettings();
+      this.inspector.followSettings();
+      this.legend.followSettings();
+    }
     const now = this.stage.pose;
     const at = this.cameraPoses.findIndex((pose) =>
       pose.eye.distanceTo(now.eye) + pose.target.distanceTo(now.target) < 1e-4 * this.size && Math.abs(pose.fov - now.fov) < 0.01);
