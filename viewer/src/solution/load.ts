@@ -1,6 +1,7 @@
 import { GLTFLoader, type GLTF, type GLTFLoaderPlugin, type GLTFParser } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { checkContainer } from './container';
 import { Problem } from './problem';
-import { kExtension, readSolution, type Document, type Parser } from './read';
+import { checkDocument, kExtension, readSolution, type Document, type Parser } from './read';
 import type { Solution } from './solution';
 
 /**
@@ -49,7 +50,22 @@ export async function findView(search: string): Promise<View> {
   return { solution: view.solution, title: typeof view.title === 'string' ? view.title : view.solution };
 }
 
-/** Fetches a file, telling which share of it is here (0..1; undefined: unknown). Names in .gz are unpacked. */
+/** Some servers unpack a .gz on the way, so that its name does not tell. */
+function isGzip(bytes: ArrayBuffer): boolean {
+  const [first, second] = new Uint8Array(bytes, 0, Math.min(2, bytes.byteLength));
+  return first === 0x1f && second === 0x8b;
+}
+
+async function unpack(bytes: ArrayBuffer): Promise<ArrayBuffer> {
+  try {
+    const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip') as never);
+    return await new Response(plain as ReadableStream).arrayBuffer();
+  } catch {
+    throw new Problem('is no whole gzip file');
+  }
+}
+
+/** Fetches a file, telling which share of it is here (0..1; undefined: unknown). What is gzipped is unpacked. */
 async function fetchBytes(address: string, onProgress: (share?: number) => void): Promise<ArrayBuffer> {
   const response = await fetchOrSay(address);
   const total = Number(response.headers.get('Content-Length')) || undefined;
@@ -63,37 +79,20 @@ async function fetchBytes(address: string, onProgress: (share?: number) => void)
       },
     }),
   );
-  const zipped = new URL(address, location.href).pathname.endsWith('.gz');
-  const bytes = zipped ? counted.pipeThrough(new DecompressionStream('gzip') as never) : counted;
+  let bytes: ArrayBuffer;
   try {
-    return await new Response(bytes).arrayBuffer();
+    bytes = await new Response(counted).arrayBuffer();
   } catch {
-    throw new Problem(zipped ? 'is no whole gzip file' : 'broke off while it was fetched');
+    throw new Problem('broke off while it was fetched');
   }
-}
-
-const kGlbMagic = 0x46546c67;
-
-/** A .glb's own header, so that what is damaged is named before anything tries to read it. */
-function checkContainer(bytes: ArrayBuffer): void {
-  const view = new DataView(bytes);
-  if (bytes.byteLength === 0) throw new Problem('is empty');
-  if (bytes.byteLength < 20 || view.getUint32(0, true) !== kGlbMagic) {
-    // Perhaps JSON; then the loader says what it thinks of it.
-    if (view.getUint8(0) === '{'.charCodeAt(0)) return;
-    throw new Problem('is neither a .glb nor a .gltf file');
-  }
-  const length = view.getUint32(8, true);
-  if (length !== bytes.byteLength) {
-    throw new Problem(`has ${bytes.byteLength} bytes, and its header says ${length}: it is damaged or not whole`);
-  }
+  return isGzip(bytes) ? unpack(bytes) : bytes;
 }
 
 /** Throws Problem, with the file's title in front. */
 export async function loadSolution(view: View, onProgress: (share?: number) => void): Promise<Solution> {
   try {
     const bytes = await fetchBytes(view.solution, onProgress);
-    checkContainer(bytes);
+    checkContainer(bytes, checkDocument);
     const loader = new GLTFLoader();
     loader.register((parser) => new DirectionalRadiancePlugin(parser, view.title));
     const folder = new URL('.', new URL(view.solution, location.href)).href;
