@@ -88,6 +88,12 @@ async function fetchBytes(address: string, onProgress: (share?: number) => void)
   return isGzip(bytes) ? unpack(bytes) : bytes;
 }
 
+/** The loader follows references of a file without a look at where they lead. */
+function whatLoaderSays(error: Error): string {
+  if (error instanceof TypeError) return `is damaged: something in it refers to what is not there (${error.message})`;
+  return `cannot be read: ${error.message ?? error}`;
+}
+
 /** Throws Problem, with the file's title in front. */
 export async function loadSolution(view: View, onProgress: (share?: number) => void): Promise<Solution> {
   try {
@@ -99,7 +105,7 @@ export async function loadSolution(view: View, onProgress: (share?: number) => v
     const gltf = await loader.parseAsync(bytes, folder);
     return gltf.userData.lobe as Solution;
   } catch (error) {
-    const why = error instanceof Problem ? error.message : `cannot be read: ${(error as Error).message ?? error}`;
+    const why = error instanceof Problem ? error.message : whatLoaderSays(error as Error);
     throw new Problem(`${view.title}: ${why}`);
   }
 }
