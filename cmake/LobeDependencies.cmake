@@ -9,6 +9,18 @@ find_package(TinyGLTF REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)
+# cpp-httplib: upstream installs a CMake package, Debian a compiled library with a pkg-config file. Its flags say what
+# the library was compiled with, which decides about the layout of its classes: they have to be taken as they are.
+add_library(lobe_httplib INTERFACE)
+find_package(httplib QUIET CONFIG)
+if(httplib_FOUND)
+  target_link_libraries(lobe_httplib INTERFACE httplib::httplib)
+else()
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(LOBE_HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib>=0.11)
+  target_link_libraries(lobe_httplib INTERFACE PkgConfig::LOBE_HTTPLIB Threads::Threads)
+endif()
 if(LOBE_BUILD_TESTS)
   find_package(GTest REQUIRED)
   find_package(Boost 1.74 REQUIRED)  # Boost.Math: an independent spherical harmonic for the tests

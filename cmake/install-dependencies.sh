@@ -6,7 +6,8 @@ set -euo pipefail
 
 packages=(git cmake ninja-build g++ ccache
           libeigen3-dev libembree-dev libopenmesh-dev libopenexr-dev libtbb-dev libtinygltf-dev libcli11-dev
-          nlohmann-json3-dev libpng-dev libgtest-dev libgmock-dev libboost-dev)
+          nlohmann-json3-dev libpng-dev zlib1g-dev
+          libcpp-httplib-dev pkg-config libgtest-dev libgmock-dev libboost-dev)
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

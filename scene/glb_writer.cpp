@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <bit>
 #include <cctype>
 #include <cerrno>
@@ -12,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -174,18 +174,23 @@ int GlbWriter::AddFloats(std::span<const float> values, const std::string& type,
   return static_cast<int>(document["accessors"].size() - 1);
 }
 
-int GlbWriter::AddUints(std::span<const uint32_t> values, Target target) {
-  const int view = AddView(values.data(), values.size_bytes(), target);
+int GlbWriter::AddUnsigned(const void* data, size_t bytes, size_t count, int component_type, Target target) {
+  const int view = AddView(data, bytes, target);
   document["accessors"].push_back(
-      {{"bufferView", view}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", values.size()}});
+      {{"bufferView", view}, {"componentType", component_type}, {"type", "SCALAR"}, {"count", count}});
   return static_cast<int>(document["accessors"].size() - 1);
 }
 
+int GlbWriter::AddUints(std::span<const uint32_t> values, Target target) {
+  return AddUnsigned(values.data(), values.size_bytes(), values.size(), 5125, target);
+}
+
 int GlbWriter::AddBytes(std::span<const uint8_t> values) {
-  const int view = AddView(values.data(), values.size_bytes(), Target::kNone);
-  document["accessors"].push_back(
-      {{"bufferView", view}, {"componentType", 5121}, {"type", "SCALAR"}, {"count", values.size()}});
-  return static_cast<int>(document["accessors"].size() - 1);
+  return AddUnsigned(values.data(), values.size_bytes(), values.size(), 5121, Target::kNone);
+}
+
+int GlbWriter::AddShorts(std::span<const uint16_t> values) {
+  return AddUnsigned(values.data(), values.size_bytes(), values.size(), 5123, Target::kNone);
 }
 
 namespace {
@@ -205,23 +210,57 @@ void CheckBinaryIsOurs(const std::string& path) {
                    ", which would overwrite it; choose another name, or one ending in .glb");
 }
 
+// Names from elsewhere may be no UTF-8; the file has to be.
+std::string Dump(const nlohmann::json& document, int indent) {
+  return document.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::vector<uint8_t> Words(std::initializer_list<size_t> words) {
+  std::vector<uint8_t> bytes;
+  for (const size_t word : words) {
+    const auto value = static_cast<uint32_t>(word);
+    const auto* begin = reinterpret_cast<const uint8_t*>(&value);
+    bytes.insert(bytes.end(), begin, begin + sizeof value);
+  }
+  return bytes;
+}
+
+/// What stands in a .glb before the bytes of its buffer: headers and JSON.
+std::vector<uint8_t> GlbHead(const nlohmann::json& document, size_t buffer_bytes, const std::string& name,
+                             const std::string& advice) {
+  std::string text = Dump(document, -1);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const size_t length = 12 + 8 + text.size() + (buffer_bytes == 0 ? 0 : 8 + buffer_bytes);
+  if (length > std::numeric_limits<uint32_t>::max()) {
+    throw InputError(name + ": would have " + std::to_string(length) +
+                     " bytes, expected less than 4 GiB in a .glb" + advice);
+  }
+  std::vector<uint8_t> head = Words({0x46546C67, 2, length, text.size(), 0x4E4F534A});
+  head.insert(head.end(), text.begin(), text.end());
+  if (buffer_bytes > 0) {
+    const std::vector<uint8_t> chunk = Words({buffer_bytes, 0x004E4942});
+    head.insert(head.end(), chunk.begin(), chunk.end());
+  }
+  return head;
+}
+
 }  // namespace
+
+nlohmann::json GlbWriter::WithBuffer(const std::string& uri) const {
+  nlohmann::json out = document;
+  if (buffer_.empty()) return out;
+  nlohmann::json buffer = {{"byteLength", PaddedBytes()}};
+  if (!uri.empty()) buffer["uri"] = uri;
+  out["buffers"] = nlohmann::json::array({buffer});
+  return out;
+}
 
 void GlbWriter::Write(const std::string& path) {
   CheckBinaryIsOurs(path);
-  buffer_.resize((buffer_.size() + 3) / 4 * 4);
-  nlohmann::json out = document;
-  const bool separate = IsGltf(path);
-  const std::string binary_path = BinaryBeside(path).string();
-  if (!buffer_.empty()) {
-    nlohmann::json buffer = {{"byteLength", buffer_.size()}};
-    if (separate) buffer["uri"] = PercentEncoded(fs::path(binary_path).filename().string());
-    out["buffers"] = nlohmann::json::array({buffer});
-  }
-  // Names from elsewhere may be no UTF-8; the file has to be.
-  std::string text = out.dump(separate ? 1 : -1, ' ', false, nlohmann::json::error_handler_t::replace);
-
-  if (separate) {
+  buffer_.resize(PaddedBytes());
+  if (IsGltf(path)) {
+    const std::string binary_path = BinaryBeside(path).string();
+    const std::string text = Dump(WithBuffer(PercentEncoded(fs::path(binary_path).filename().string())), 1);
     TemporaryFile json(path);
     json.Write({AsBytes(text)});
     if (!buffer_.empty()) {
@@ -232,22 +271,20 @@ void GlbWriter::Write(const std::string& path) {
     json.Rename();
     return;
   }
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const size_t length = 12 + 8 + text.size() + (buffer_.empty() ? 0 : 8 + buffer_.size());
-  if (length > std::numeric_limits<uint32_t>::max()) {
-    throw InputError(path + ": would have " + std::to_string(length) +
-                     " bytes, expected less than 4 GiB in a .glb; choose a name ending in .gltf");
-  }
-  const std::array<uint32_t, 5> head = {0x46546C67, 2, static_cast<uint32_t>(length),
-                                        static_cast<uint32_t>(text.size()), 0x4E4F534A};
-  const std::array<uint32_t, 2> chunk = {static_cast<uint32_t>(buffer_.size()), 0x004E4942};
-  const auto bytes = [](const auto& words) {
-    return std::span(reinterpret_cast<const uint8_t*>(words.data()), sizeof words);
-  };
+  const std::vector<uint8_t> head =
+      GlbHead(WithBuffer(), buffer_.size(), path, "; choose a name ending in .gltf");
   TemporaryFile file(path);
-  file.Write(buffer_.empty() ? Parts{bytes(head), AsBytes(text)}
-                             : Parts{bytes(head), AsBytes(text), bytes(chunk), buffer_});
+  file.Write(buffer_.empty() ? Parts{head} : Parts{head, buffer_});
   file.Rename();
+}
+
+std::vector<uint8_t> GlbWriter::Glb(const std::string& name) const {
+  std::vector<uint8_t> bytes = GlbHead(WithBuffer(), PaddedBytes(), name, "");
+  const size_t whole = bytes.size() + PaddedBytes();
+  bytes.reserve(whole);
+  bytes.insert(bytes.end(), buffer_.begin(), buffer_.end());
+  bytes.resize(whole);
+  return bytes;
 }
 
 void WriteFileAtomically(const std::string& path, std::span<const uint8_t> bytes) {

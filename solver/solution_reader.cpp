@@ -59,6 +59,11 @@ class SolutionReader {
       throw InputError(file_.path() + ": " + kExtensionName + " version " + std::to_string(version) +
                        " found, " + std::to_string(kFormatVersion) + " expected");
     }
+    if (record_.Bool("viewing", false)) {
+      throw InputError(file_.path() +
+                       " was made by `lobe export` for viewing and lacks what rendering needs; use the file "
+                       "that `lobe solve` wrote");
+    }
     if (record_.String("basis") != kBasisName)
       record_.FailValue("basis", std::string("'") + kBasisName + "'");
     if (record_.String("frame") != kFrameName)

@@ -72,6 +72,21 @@ TEST(MaterialLobesTest, DiffuseMaterialsAreOneCoefficient) {
   EXPECT_NEAR(diffuse.DiffuseAlbedo()[0], 0.7f, 1e-6);
 }
 
+TEST(MaterialLobesTest, HemisphericalAlbedoIsTheMeanOverAllAngles) {
+  TableCache cache;
+  const MaterialLobes lambert(Lambert{Rgb(0.1f, 0.7f, 1.0f / 3)}, {}, cache);
+  EXPECT_TRUE((lambert.HemisphericalAlbedo() == Rgb(0.1f, 0.7f, 1.0f / 3)).all()) << "exact";
+  const MaterialLobes coated(Gltf(0.7f, 0, 0.4f), {}, cache);
+  // Midpoints, many: an error of their step squared, but for the corner at grazing.
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  constexpr int kSteps = 20000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double mu = (i + 0.5) / kSteps;
+    sum += 2 * mu / kSteps * coated.Albedo(float(mu)).cast<double>();
+  }
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(coated.HemisphericalAlbedo()[c], sum[c], 1e-4);
+}
+
 TEST(MaterialLobesTest, TakesTheSmallestDegreeWithinTheTolerance) {
   TableCache cache;
   for (const double tolerance : {0.5, 0.2, 0.05}) {

@@ -60,6 +60,17 @@ TEST(GlbWriterTest, GlbReadsBack) {
   EXPECT_EQ(folder.Entries(), std::vector<std::string>{"a.glb"});
 }
 
+TEST(GlbWriterTest, BytesInMemoryAreThoseOfTheFile) {
+  const ScratchFolder folder;
+  GlbWriter writer = Sample();
+  writer.AddShorts(std::vector<uint16_t>{1, 65535, 3});  // six bytes: the end is padded
+  const std::vector<uint8_t> bytes = writer.Glb("sample.glb");
+  writer.Write(folder.File("sample.glb"));
+  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), ReadWholeFile(folder.File("sample.glb")));
+  const GltfFile file(folder.File("sample.glb"));
+  EXPECT_EQ(file.ReadIndices(3, "shorts"), (std::vector<uint32_t>{1, 65535, 3}));
+}
+
 TEST(GlbWriterTest, ChunksArePaddedAndCounted) {
   const ScratchFolder folder;
   Sample().Write(folder.File("a.glb"));

@@ -1,0 +1,173 @@
+#include "app/http_server.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <functional>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <httplib.h>
+
+#include "app/mime_type.h"
+#include "scene/input_error.h"
+
+namespace lobe {
+namespace {
+
+constexpr const char* kAddress = "127.0.0.1";
+
+/// How many connections are open, and a way to wait for none.
+class OpenConnections {
+ public:
+  void Begin() {
+    const std::lock_guard lock(mutex_);
+    ++count_;
+  }
+  void End() {
+    const std::lock_guard lock(mutex_);
+    --count_;
+    changed_.notify_all();
+  }
+  /// True if all ended within `patience`.
+  bool WaitForAll(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, patience, [&] { return count_ == 0; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int count_ = 0;
+};
+
+/// A thread for every connection. The library's own pool has few threads, which a browser's idle connections
+/// would use up, and joins them all in the end, up to the longest time-out.
+class ThreadPerConnection : public httplib::TaskQueue {
+ public:
+  explicit ThreadPerConnection(std::shared_ptr<OpenConnections> open) : open_(std::move(open)) {}
+
+  void enqueue(std::function<void()> serve) override {
+    open_->Begin();
+    const auto run = [open = open_, serve = std::move(serve)] {
+      serve();
+      open->End();
+    };
+    try {
+      std::thread(run).detach();
+    } catch (const std::system_error&) {  // no more threads: one after the other then
+      run();
+    }
+  }
+  void shutdown() override {}
+
+ private:
+  std::shared_ptr<OpenConnections> open_;
+};
+
+/// Is this Host header one of this machine's own names, whatever the port?
+bool NamesLoopback(const std::string& host) {
+  const size_t end = host.starts_with('[') ? host.find(']') + 1 : std::min(host.find(':'), host.size());
+  std::string name = host.substr(0, end);
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name == kAddress || name == "localhost" || name == "[::1]";
+}
+
+void Refuse(int status, const char* sentence, httplib::Response* response) {
+  response->status = status;
+  response->set_content(sentence, "text/plain; charset=utf-8");
+}
+
+void Send(const std::vector<uint8_t>& bytes, const std::string& type, httplib::Response* response) {
+  if (bytes.empty()) {
+    response->set_content("", type);
+    return;
+  }
+  // In pieces, between which the library looks whether it is to stop; and never a copy of the whole.
+  response->set_content_provider(
+      bytes.size(), type, [&bytes](size_t offset, size_t length, httplib::DataSink& sink) {
+        constexpr size_t kPiece = size_t{1} << 18;
+        return sink.write(reinterpret_cast<const char*>(bytes.data()) + offset, std::min(length, kPiece));
+      });
+}
+
+}  // namespace
+
+struct HttpServer::Impl {
+  httplib::Server server;
+  SiteFiles files;
+  int port = 0;
+  std::shared_ptr<OpenConnections> open = std::make_shared<OpenConnections>();
+  std::thread listener;
+
+  void Answer(const httplib::Request& request, httplib::Response& response) const {
+    response.set_header("Cache-Control", "no-store");
+    response.set_header("X-Content-Type-Options", "nosniff");
+    response.set_header("Cross-Origin-Resource-Policy", "same-origin");
+    if (!NamesLoopback(request.get_header_value("Host"))) {
+      return Refuse(403, "This server answers to 127.0.0.1 and localhost only.\n", &response);
+    }
+    if (request.method != "GET" && request.method != "HEAD") {
+      response.set_header("Allow", "GET, HEAD");
+      return Refuse(405, "Only GET and HEAD are answered.\n", &response);
+    }
+    // The library would hand out ranges beyond the end.
+    if (!request.ranges.empty()) return Refuse(416, "Files are sent whole only.\n", &response);
+    const auto found = files.find(request.path == "/" ? "index.html" : request.path.substr(1));
+    if (!request.path.starts_with('/') || found == files.end()) {
+      return Refuse(404, "There is no such file.\n", &response);
+    }
+    Send(found->second, MimeType(found->first), &response);
+  }
+};
+
+HttpServer::HttpServer(int port) : impl_(std::make_unique<Impl>()) {
+  httplib::Server& server = impl_->server;
+  // The library's default is SO_REUSEPORT: two servers would share a port, and each get half the requests.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  errno = 0;
+  impl_->port = port == 0                             ? server.bind_to_any_port(kAddress)
+                : server.bind_to_port(kAddress, port) ? port
+                                                      : -1;
+  if (impl_->port < 0) {
+    throw InputError("port " + std::to_string(port) + " of this machine cannot be had" +
+                     (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
+  }
+}
+
+HttpServer::~HttpServer() {
+  if (!impl_->listener.joinable()) return;
+  impl_->server.stop();
+  impl_->listener.join();
+  // A client that dawdles is not waited for. Its thread ends with the process, and may look at what it serves
+  // until then: that is left behind.
+  if (!impl_->open->WaitForAll(std::chrono::milliseconds(200))) static_cast<void>(impl_.release());
+}
+
+int HttpServer::port() const { return impl_->port; }
+
+void HttpServer::Start(SiteFiles files) {
+  impl_->files = std::move(files);
+  httplib::Server& server = impl_->server;
+  server.new_task_queue = [open = impl_->open] { return new ThreadPerConnection(open); };
+  // One request a connection: cheap from a machine to itself, and nothing is left idle.
+  server.set_keep_alive_max_count(1);
+  // A page may be busy with what it has; five seconds, the default, would cut it off.
+  server.set_write_timeout(std::chrono::minutes(5));
+  server.set_pre_routing_handler([impl = impl_.get()](const auto& request, auto& response) {
+    impl->Answer(request, response);
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  impl_->listener = std::thread([&server] { server.listen_after_bind(); });
+  // Before it listens it cannot be told to stop.
+  while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+}  // namespace lobe
