@@ -1,11 +1,9 @@
-// The browser tests, all in one process and one browser:
-//   LOBE_PROGRAM=build/release/app/lobe LOBE_VIEWER_BUNDLE=build/release/viewer LOBE_VIEWER_WORK=/tmp/viewer \
-//     node --test-reporter=spec tests/viewer/run.mjs [NAME ...]
-// NAME: the beginning of a test file's name, such as "picture". Pictures that tests saw stay in LOBE_VIEWER_WORK.
+// All browser tests in one process and one browser; run.sh says what they need. Arguments: which, by the beginnings of
+// their files' names.
 import { readdirSync } from 'node:fs';
 
 const names = process.argv.slice(2);
 const files = readdirSync(new URL('.', import.meta.url)).filter((name) => name.endsWith('.test.mjs')).sort();
-for (const file of files) {
-  if (names.length === 0 || names.some((name) => file.startsWith(name))) await import(`./${file}`);
-}
+const chosen = files.filter((file) => names.length === 0 || names.some((name) => file.startsWith(name)));
+if (chosen.length === 0) throw new Error(`no browser test begins with ${names.join(' or ')}`);
+for (const file of chosen) await import(`./${file}`);

@@ -5,7 +5,7 @@ import path from 'node:path';
 import { root } from './packages.mjs';
 
 const fromEnvironment = (name) => {
-  if (!process.env[name]) throw new Error(`${name} is not set; CTest's ViewerBrowser sets it, or see tests/viewer/run.mjs`);
+  if (!process.env[name]) throw new Error(`${name} is not set; see tests/viewer/run.sh`);
   return process.env[name];
 };
 
