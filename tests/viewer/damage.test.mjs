@@ -19,7 +19,7 @@ const whole = () => readFileSync(solution('cornell_glossy'));
 const files = {
   'A file that was cut off': [() => whole().subarray(0, 100000), /damaged or not whole/],
   'A file whose JSON is torn': [() => changed(whole(), '"asset"', '"asset['), /JSON that is damaged/],
-  'A file whose sizes are wrong': [() => changed(whole(), '"byteOffset":', '"byteoffzet":'), /damaged/],
+  'A file whose sizes are wrong': [() => changed(whole(), '"count":', '"counb":'), /damaged/],
   'A file of a newer format version': [() => changed(whole(), '"version":1', '"version":7'), /format version 7/],
   'A glTF file without lobes': [() => readFileSync(scene('cornell_glossy')), /without lobes/],
   'A file that is something else': [() => Buffer.from('hello'), /neither a \.glb nor a \.gltf/],

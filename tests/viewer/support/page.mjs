@@ -51,7 +51,7 @@ export async function withPage(address, look) {
 export async function ready(page, noticed) {
   const said = () => page.evaluate(() => document.querySelector('#problem')?.textContent || document.body.innerText);
   try {
-    await page.waitForFunction(() => window.lobe || document.querySelector('#problem')?.checkVisibility());
+    await page.waitForFunction(() => window.lobe || document.querySelector('#problem')?.innerText);
   } catch {
     throw new Error(`the page has no window.lobe; it says "${await said()}", and ${noticed.errors.join('; ')}`);
   }

@@ -43,16 +43,21 @@ export function nearJumps({ width, height, data }, step = 12, reach = 2) {
   return out;
 }
 
-/** Mean of |a - b| by channel, 0..255, over pixels that `excluded` (if given) does not mark, and their share. */
+/**
+ * Mean of |a - b| by channel, 0..255, over pixels that `excluded` (if given) does not mark; their share of all; and
+ * the share of them where a channel is off by more than 16, which anybody sees.
+ */
 export function difference(a, b, excluded = null) {
   const sums = [0, 0, 0], pixels = a.width * a.height;
-  let kept = 0;
+  let kept = 0, far = 0;
   for (let i = 0; i < pixels; ++i) {
     if (excluded?.[i]) continue;
     ++kept;
-    for (let c = 0; c < 3; ++c) sums[c] += Math.abs(a.data[4 * i + c] - b.data[4 * i + c]);
+    const off = [0, 1, 2].map((c) => Math.abs(a.data[4 * i + c] - b.data[4 * i + c]));
+    off.forEach((value, c) => (sums[c] += value));
+    if (Math.max(...off) > 16) ++far;
   }
-  return { byChannel: sums.map((s) => s / kept), share: kept / pixels };
+  return { byChannel: sums.map((s) => s / kept), share: kept / pixels, far: far / kept };
 }
 
 /** What a display shows of linear light, 0..255. */
