@@ -1,23 +1,45 @@
-import { Vector3 } from 'three';
-import { findView, loadSolution } from './solution/load';
+import { findView, loadFile, loadSolution } from './solution/load';
 import { Problem } from './solution/problem';
-import { Stage } from './stage/stage';
+import type { Solution } from './solution/solution';
+import { acceptFiles } from './ui/files';
+import { Loading, hideProblem, showProblem } from './ui/notices';
+import { offerHooks } from './ui/hooks';
+import { Page } from './ui/page';
 
-async function start(): Promise<void> {
-  const view = await findView(location.search);
-  const solution = await loadSolution(view, () => {});
-  const stage = new Stage(document.querySelector('canvas')!, solution);
-  const camera = solution.cameras[0];
-  if (camera) {
-    const eye = new Vector3().setFromMatrixColumn(camera.matrix, 3);
-    const back = new Vector3().setFromMatrixColumn(camera.matrix, 2);
-    stage.setPose({
-      eye, target: eye.clone().sub(back), up: new Vector3().setFromMatrixColumn(camera.matrix, 1),
-      fov: (camera.fovY * 180) / Math.PI,
-    });
+let page: Page | null = null;
+const loading = new Loading();
+const files = acceptFiles((file) => {
+  // What went wrong is on the page by now.
+  open(file.name, () => loadFile(file)).catch(() => {});
+});
+
+async function open(title: string, load: () => Promise<Solution>): Promise<void> {
+  hideProblem();
+  loading.show(title);
+  try {
+    const solution = await load();
+    page?.dispose();
+    page = null;
+    page = new Page(solution, files.choose);
+  } catch (error) {
+    if (!(error instanceof Problem)) console.error(error);
+    const sentence = error instanceof Problem ? error.message : `${title}: ${(error as Error).message ?? error}`;
+    showProblem(sentence, files.choose, page !== null);
+    throw new Problem(sentence);
+  } finally {
+    loading.hide();
   }
 }
 
-start().catch((error: unknown) => {
-  document.body.textContent = error instanceof Problem ? error.message : String(error);
-});
+async function start(): Promise<void> {
+  loading.show('Looking for the solution');
+  let title = 'Lobe';
+  await open(title, async () => {
+    const view = await findView(location.search);
+    title = view.title;
+    document.title = title;
+    return loadSolution(view, (share) => loading.show(title, share));
+  });
+}
+
+offerHooks(start(), () => page);

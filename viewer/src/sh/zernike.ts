@@ -152,3 +152,21 @@ export function toZernike(lMax: number, h: ArrayLike<number>, out: Float32Array 
     }
   }
 }
+
+/** The way back, for one channel: coefficients over Z to those over H, as files and `lobe inspect` have them. */
+export function toHemisphere(lMax: number, z: ArrayLike<number>, out: Float32Array | Float64Array): void {
+  let blocks = blocksOf.get(lMax);
+  if (!blocks) blocksOf.set(lMax, (blocks = toZernikeBlocks(lMax)));
+  for (let m = -lMax; m <= lMax; ++m) {
+    const order = Math.abs(m);
+    const { size, block } = blocks[order];
+    // Upper triangles: from the highest degree down.
+    for (let row = size - 1; row >= 0; --row) {
+      let rest = z[coefficientIndex(order + 2 * row, m)];
+      for (let column = row + 1; column < size; ++column) {
+        rest -= block[row * size + column] * out[coefficientIndex(order + 2 * column, m)];
+      }
+      out[coefficientIndex(order + 2 * row, m)] = rest / block[row * size + row];
+    }
+  }
+}

@@ -94,20 +94,45 @@ function whatLoaderSays(error: Error): string {
   return `cannot be read: ${error.message ?? error}`;
 }
 
-/** Throws Problem, with the file's title in front. */
-export async function loadSolution(view: View, onProgress: (share?: number) => void): Promise<Solution> {
+/** `folder`: where files are that a .gltf refers to. */
+async function readBytes(bytes: ArrayBuffer, title: string, folder: string): Promise<Solution> {
+  checkContainer(bytes, checkDocument);
+  const loader = new GLTFLoader();
+  loader.register((parser) => new DirectionalRadiancePlugin(parser, title));
+  const gltf = await loader.parseAsync(bytes, folder);
+  return gltf.userData.lobe as Solution;
+}
+
+/** Puts the file's title in front of what is wrong with it. */
+async function titled<T>(title: string, work: () => Promise<T>): Promise<T> {
   try {
-    const bytes = await fetchBytes(view.solution, onProgress);
-    checkContainer(bytes, checkDocument);
-    const loader = new GLTFLoader();
-    loader.register((parser) => new DirectionalRadiancePlugin(parser, view.title));
-    const folder = new URL('.', new URL(view.solution, location.href)).href;
-    const gltf = await loader.parseAsync(bytes, folder);
-    return gltf.userData.lobe as Solution;
+    return await work();
   } catch (error) {
     const why = error instanceof Problem ? error.message : whatLoaderSays(error as Error);
-    throw new Problem(`${view.title}: ${why}`);
+    throw new Problem(`${title}: ${why}`);
   }
+}
+
+/** Throws Problem, with the file's title in front. */
+export function loadSolution(view: View, onProgress: (share?: number) => void): Promise<Solution> {
+  return titled(view.title, async () => {
+    const bytes = await fetchBytes(view.solution, onProgress);
+    return readBytes(bytes, view.title, new URL('.', new URL(view.solution, location.href)).href);
+  });
+}
+
+/** A file of whoever looks at the page; it is read here and sent nowhere. */
+export function loadFile(file: File): Promise<Solution> {
+  return titled(file.name, async () => {
+    let bytes: ArrayBuffer;
+    try {
+      bytes = await file.arrayBuffer();
+    } catch {
+      throw new Problem('cannot be read from the disk');
+    }
+    // A .gltf alone has its .bin elsewhere, which a page may not look for.
+    return readBytes(isGzip(bytes) ? await unpack(bytes) : bytes, file.name, '');
+  });
 }
 
 export type { Document };
