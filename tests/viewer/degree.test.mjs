@@ -34,6 +34,15 @@ test('The slider of degrees keeps the flux of every node and the brightness of t
           `at degree ${degree} node ${71 * i} has flux ${flux}, and ${whole[i]} at ${most}`)));
       }
 
+      const glossy = await page.evaluate(() => window.lobe.solution.patches
+        .find((p) => window.lobe.solution.materials[p.material].name === 'brushed aluminium').firstNode);
+      const peak = () => page.evaluate((node) => window.lobe.figures(node).peak.luminance, glossy);
+      const flatPeak = await peak();
+      await setDegree(page, most);
+      const wholePeak = await peak();
+      assert.ok(wholePeak > 1.1 * flatPeak, `the lobe of node ${glossy} peaks at ${wholePeak}, cut at 0 at ${flatPeak}`);
+      await setDegree(page, 0);
+
       const flat = await capture(page, 320, 240);
       keep('degree.0', flat);
       keep('degree.whole', wholePicture);

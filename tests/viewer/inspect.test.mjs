@@ -37,7 +37,7 @@ test('A click on the aluminium block selects the node that lobe inspect names, w
           (node) => document.querySelector('#panel [data-figure="node"]')?.getAttribute('data-value') === node,
           String(expected.node), { timeout: 10000 },
         ).catch(async () => assert.fail(`pixel ${x},${y}: node ${await value(page, 'node')}, expected ${expected.node}`));
-        assert.match(page.url(), new RegExp(`node=${expected.node}\\b`));
+        await page.waitForURL((url) => url.hash.split('&').includes(`node=${expected.node}`), { timeout: 10000 });
 
         const flux = (await value(page, 'flux')).match(/[-+.\de]+/g).map(Number);
         assert.equal(flux.length, 3);

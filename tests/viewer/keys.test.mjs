@@ -44,7 +44,7 @@ test('A question mark opens the help, Escape closes it', () => withView('', asyn
   await help.waitFor({ state: 'hidden', timeout: 5000 });
 }));
 
-test('R goes back to where the view began', () => withView('#camera=view1', async (page) => {
+test('R goes back to the first camera', () => withView('', async (page) => {
   const before = await pose(page);
   await page.evaluate(() => {
     const { stage } = window.lobe, { eye } = stage.pose;

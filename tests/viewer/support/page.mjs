@@ -1,4 +1,5 @@
 // Debian's Chromium, without a screen or a graphics card, and pages in it that notice whatever goes wrong.
+import assert from 'node:assert/strict';
 import { execSync } from 'node:child_process';
 import { after } from 'node:test';
 import { chromium } from './packages.mjs';
@@ -61,10 +62,12 @@ export async function ready(page, noticed) {
   });
 }
 
-/** As withPage, of a page that shows a scene, once it does. */
+/** As withPage, of a page that shows a scene, once it does; whatever is done with it must go without an error. */
 export const withScene = (address, look) => withPage(address, async (page, noticed) => {
   await ready(page, noticed);
-  return look(page, noticed);
+  const seen = await look(page, noticed);
+  assert.deepEqual(noticed.errors, []);
+  return seen;
 });
 
 /** The scene from where the eye is, as {width, height, data}: RGBA, the top row first. */
