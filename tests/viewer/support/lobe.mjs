@@ -37,6 +37,8 @@ export function solution(name) {
 /** Serves a solution as users do, by `lobe view`: its address, and how to end it. */
 export async function view(file) {
   const child = spawn(program, ['view', file, '--no-browser', '--port', '0', '--viewer', bundle, '--quiet']);
+  const end = () => child.kill();
+  process.once('exit', end);
   let errors = '';
   child.stderr.on('data', (text) => (errors += text));
   const ended = new Promise((resolve) => child.once('close', resolve));
@@ -54,6 +56,7 @@ export async function view(file) {
     /** Interrupts it, and says with which code it went. */
     async close() {
       child.kill('SIGINT');
+      process.off('exit', end);
       return ended;
     },
   };
