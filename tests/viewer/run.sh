@@ -21,7 +21,8 @@ command -v node >/dev/null || missing "there is no Node.js; \`bash cmake/install
 case "${1:-}" in
   unit)
     cd "$viewer"
-    exec npm test
+    # Vitest gives a test five seconds, which is little on a busy machine.
+    exec npm test -- --testTimeout=60000
     ;;
   browser)
     [ -f "${LOBE_VIEWER_BUNDLE:?}/index.html" ] || missing "there is no page in $LOBE_VIEWER_BUNDLE; see why viewer/build.sh fails"

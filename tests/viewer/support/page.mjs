@@ -17,7 +17,8 @@ async function launch() {
   } catch {
     throw new Error('there is no chromium; `bash cmake/install-dependencies.sh browser` installs it');
   }
-  const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+  // Containers often have little shared memory.
+  const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'];
   if (process.getuid() === 0) args.push('--no-sandbox');
   return chromium.launch({ executablePath, args });
 }
