@@ -1,12 +1,12 @@
 #include "app/http_server.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
-#include <condition_variable>
 #include <cstring>
 #include <functional>
-#include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -21,29 +21,18 @@ namespace {
 
 constexpr const char* kAddress = "127.0.0.1";
 
-/// How many connections are open, and a way to wait for none.
-class OpenConnections {
- public:
-  void Begin() {
-    const std::lock_guard lock(mutex_);
-    ++count_;
-  }
-  void End() {
-    const std::lock_guard lock(mutex_);
-    --count_;
-    changed_.notify_all();
-  }
-  /// True if all ended within `patience`.
-  bool WaitForAll(std::chrono::milliseconds patience) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, patience, [&] { return count_ == 0; });
-  }
+/// How many connections are open. Threads that outlive the server still count down.
+using OpenConnections = std::atomic<int>;
 
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int count_ = 0;
-};
+/// True if none is left within `patience`.
+bool WaitForNone(const OpenConnections& open, std::chrono::milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (open.load() > 0) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
 
 /// A thread for every connection. The library's own pool has few threads, which a browser's idle connections
 /// would use up, and joins them all in the end, up to the longest time-out.
@@ -52,10 +41,10 @@ class ThreadPerConnection : public httplib::TaskQueue {
   explicit ThreadPerConnection(std::shared_ptr<OpenConnections> open) : open_(std::move(open)) {}
 
   void enqueue(std::function<void()> serve) override {
-    open_->Begin();
+    open_->fetch_add(1);
     const auto run = [open = open_, serve = std::move(serve)] {
       serve();
-      open->End();
+      open->fetch_sub(1);
     };
     try {
       std::thread(run).detach();
@@ -101,7 +90,7 @@ struct HttpServer::Impl {
   httplib::Server server;
   SiteFiles files;
   int port = 0;
-  std::shared_ptr<OpenConnections> open = std::make_shared<OpenConnections>();
+  std::shared_ptr<OpenConnections> open = std::make_shared<OpenConnections>(0);
   std::thread listener;
 
   void Answer(const httplib::Request& request, httplib::Response& response) const {
@@ -148,7 +137,7 @@ HttpServer::~HttpServer() {
   impl_->listener.join();
   // A client that dawdles is not waited for. Its thread ends with the process, and may look at what it serves
   // until then: that is left behind.
-  if (!impl_->open->WaitForAll(std::chrono::milliseconds(200))) static_cast<void>(impl_.release());
+  if (!WaitForNone(*impl_->open, std::chrono::milliseconds(200))) static_cast<void>(impl_.release());
 }
 
 int HttpServer::port() const { return impl_->port; }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPage = "index.html";
+constexpr const char *kPage = "index.html", *kPlain = "solution.glb", *kPacked = "solution.glb.gz";
 constexpr const char* kHowToGet =
     "; the page that shows solutions is built with Lobe where Node.js 18 or newer and npm are installed: "
     "install "
@@ -71,8 +71,10 @@ PackedSolution AddSolution(const std::string& path, const SitePacking& packing, 
     bytes = ViewingFile(solution, packing.precision, path + " reduced to what viewing needs");
   }
   if (packing.gzip) bytes = Gzip(bytes);
-  packed.file = packing.gzip ? "solution.glb.gz" : "solution.glb";
+  packed.file = packing.gzip ? kPacked : kPlain;
   packed.bytes = bytes.size();
+  // An earlier export may serve as the page; its solution is not this one.
+  for (const char* name : {kPlain, kPacked}) site->erase(name);
   (*site)[packed.file] = std::move(bytes);
 
   nlohmann::json view = {

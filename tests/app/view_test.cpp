@@ -57,15 +57,15 @@ class ViewTest : public ::testing::Test {
     shared_ = nullptr;
   }
   static std::string Solution() { return shared_->File("room.glb"); }
-  static std::vector<std::string> Arguments(const std::string& solution, std::vector<std::string> more = {}) {
-    more.insert(more.begin(),
-                {"view", solution, "--viewer", shared_->File("page"), "--no-browser", "--quiet"});
+  static std::vector<std::string> Arguments(const std::string& solution, std::vector<std::string> more = {},
+                                            const std::string& page = shared_->File("page")) {
+    more.insert(more.begin(), {"view", solution, "--viewer", page, "--no-browser", "--quiet"});
     return more;
   }
   /// Serves at any free port, until the end of the test.
-  int Serve(std::vector<std::string> more = {}) {
+  int Serve(std::vector<std::string> more = {}, const std::string& page = shared_->File("page")) {
     more.insert(more.end(), {"--port", "0"});
-    view_ = std::make_unique<RunningLobe>(Arguments(Solution(), more));
+    view_ = std::make_unique<RunningLobe>(Arguments(Solution(), more, page));
     EXPECT_THAT(view_->first_line(), StartsWith("http://127.0.0.1:"));
     return std::atoi(view_->first_line().substr(17).c_str());
   }
@@ -173,10 +173,13 @@ TEST_F(ViewTest, SignalsEndItWithinASecond) {
 }
 
 TEST_F(ViewTest, ClientsThatDawdleAreNotWaitedFor) {
-  const int port = Serve();
+  const ScratchFolder folder;
+  const std::string page = MakePage(folder);
+  WriteWholeFile(page + "/large.bin", std::string(30'000'000, 'x'));  // more than sockets hold
+  const int port = Serve({}, page);
   Connection says_nothing(port), says_half(port), takes_nothing(port);
   says_half.Send("GET / HTTP/1.1\r\nHost: local");
-  takes_nothing.Send("GET /solution.glb HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  takes_nothing.Send("GET /large.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(Ask(port, "/").status, 200) << "others are served meanwhile";
   const RunningLobe::End end = view_->Stop(SIGINT);
   EXPECT_EQ(end.exit_code, 0);
