@@ -25,19 +25,21 @@ const vertexShader = `
   attribute vec3 color;
   varying vec3 shown;
   varying vec3 seen;
+  varying vec3 across;
   void main() {
     shown = color;
     vec4 at = modelViewMatrix * vec4(position, 1.0);
     seen = at.xyz;
+    across = normalMatrix * normal;
     gl_Position = projectionMatrix * at;
   }`;
 const fragmentShader = `
   varying vec3 shown;
   varying vec3 seen;
+  varying vec3 across;
   void main() {
-    vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-    float facing = abs(dot(normal, normalize(seen)));
-    gl_FragColor = vec4(shown * mix(0.45, 1.0, facing), 1.0);
+    float facing = abs(dot(normalize(across), normalize(seen)));
+    gl_FragColor = vec4(shown * mix(0.4, 1.0, facing), 1.0);
     #include <colorspace_fragment>
   }`;
 
@@ -55,7 +57,7 @@ export class LobeInPlace {
       }));
     const line = (opacity: number) =>
       new LineBasicMaterial({ color: kGhostColour, transparent: true, opacity, depthWrite: false });
-    this.lines = new LineSegments(new BufferGeometry(), line(0.22));
+    this.lines = new LineSegments(new BufferGeometry(), line(0.3));
     this.ghost = new LineSegments(new BufferGeometry(), line(0.28));
     this.object.add(this.surface, this.lines, this.ghost);
     for (const part of this.object.children) part.frustumCulled = false;
@@ -78,7 +80,9 @@ export class LobeInPlace {
     const surface = surfaceOf(shown, whole.lMax);
     const colours = coloursOf(surface.radiance, surface.luminance, look);
     const positions = new BufferAttribute(surface.positions, 3);
-    replace(this.surface, positions, surface.triangles).setAttribute('color', new BufferAttribute(colours, 3));
+    const shape = replace(this.surface, positions, surface.triangles);
+    shape.setAttribute('color', new BufferAttribute(colours, 3));
+    shape.computeVertexNormals();
     replace(this.lines, positions, surface.lines);
     this.ghost.visible = shown.lMax < whole.lMax;
     if (this.ghost.visible) {

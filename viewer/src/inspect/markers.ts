@@ -27,9 +27,10 @@ const dots = {
       float r = length(gl_PointCoord - 0.5) * (2.0 * radius + 2.0);
       float inside = clamp(radius - r + 0.5, 0.0, 1.0);
       if (inside == 0.0) discard;
-      // A dark rim: seen on bright walls too.
-      float core = clamp(radius - 1.5 * pixelRatio - r + 0.5, 0.0, 1.0);
-      gl_FragColor = vec4(mix(vec3(0.004), colour, core), inside);
+      // A dark rim, the colour, and in the middle of large ones white: seen on walls of any colour.
+      float ring = clamp(radius - 1.5 * pixelRatio - r + 0.5, 0.0, 1.0);
+      float core = clamp(radius - 4.0 * pixelRatio - r + 0.5, 0.0, 1.0);
+      gl_FragColor = vec4(mix(mix(vec3(0.004), colour, ring), vec3(1.0), core), inside);
       #include <colorspace_fragment>
     }`,
 };
@@ -43,7 +44,7 @@ const line = {
   fragmentShader: `
     uniform vec3 colour;
     void main() {
-      gl_FragColor = vec4(colour, 0.85);
+      gl_FragColor = vec4(mix(colour, vec3(1.0), 0.4), 0.9);
       #include <colorspace_fragment>
     }`,
 };
@@ -74,7 +75,7 @@ export class Markers {
     this.points.geometry.dispose();
     this.points.geometry = new BufferGeometry()
       .setAttribute('position', attribute)
-      .setAttribute('size', new BufferAttribute(Float32Array.from(element, (n) => (n === node ? 6 : 3.5)), 1));
+      .setAttribute('size', new BufferAttribute(Float32Array.from(element, (n) => (n === node ? 6.5 : 4)), 1));
   }
 
   dispose(): void {

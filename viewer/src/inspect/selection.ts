@@ -11,10 +11,10 @@ import { elementOf, Markers } from './markers';
 /** 0: the node that was chosen first; 1: the one it is compared with. */
 export type Seat = 0 | 1;
 
-/** Share of the scene's diagonal that the longest lobe is: that of `lobe inspect -o lobe.glb`. */
-const kLength = 0.1;
+/** Share of the scene's diagonal that the longest lobe is; a diffuse one is twice as wide. Chosen by eye. */
+const kLength = 0.08;
 /** And never more than this share of the distance it is seen from. */
-const kLengthOfDistance = 0.3;
+const kLengthOfDistance = 0.22;
 
 interface Taken {
   node: number;

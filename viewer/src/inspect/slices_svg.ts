@@ -81,7 +81,7 @@ function grid(at: Place, phi: number, theme: SlicesTheme): string {
     const t = Math.PI / 2 - (theta * Math.PI) / 180, x = Math.cos(t), y = -Math.sin(t);
     parts.push(`<path d="M${p(at.x, at.y)} L${p(at.x + at.radius * x, at.y + at.radius * y)}" stroke="${theme.grid}"/>`);
     if (Math.abs(theta) === 90) continue;
-    const anchor = theta === 0 ? 'middle' : theta > 0 ? 'start' : 'end', gap = at.radius + 5;
+    const anchor = theta === 0 ? 'middle' : theta > 0 ? 'start' : 'end', gap = at.radius + 4;
     parts.push(`<text x="${(at.x + gap * x).toFixed(1)}" y="${(at.y + gap * y + (theta === 0 ? 0 : 2)).toFixed(1)}" text-anchor="${anchor}" fill="${theme.faint}">${Math.abs(theta)}°</text>`);
   }
   const around = (degrees: number) => ((Math.round(degrees) % 360) + 360) % 360;
@@ -118,7 +118,7 @@ function curve(c: Curve, at: Place, theme: SlicesTheme, filled: boolean): string
 export function sliceSvg(
   curves: readonly Curve[], title: string, theme: SlicesTheme, width: number, full: number, x = 0, y = 0,
 ): string {
-  const at: Place = { x: x + width / 2, y: y + width / 2 - 2, radius: width / 2 - 22, full };
+  const at: Place = { x: x + width / 2, y: y + width / 2 - 4, radius: width / 2 - 19, full };
   const phi = curves[0].slice.phiDegrees;
   return (
     `<g font-size="10" font-family="${theme.font}">` + grid(at, phi, theme) +

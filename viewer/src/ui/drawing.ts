@@ -1,4 +1,7 @@
-/** What the page needs of draw/: the one place to change when that room changes. Provisional: draw/ brings its own. */
+/**
+ * What the page needs of draw/: the one place to change when that room changes. Colours are provisional, until draw/ has
+ * its own (colour_map.ts); what a Stage may already say for itself is asked of it.
+ */
 import type { Solution } from '../solution/solution';
 import type { Quantity } from '../stage/settings';
 import type { Stage } from '../stage/stage';
@@ -36,8 +39,17 @@ export const categories: { readonly kind: readonly Category[]; readonly hidden: 
   ],
 };
 
+interface AbleStage {
+  whyNot?(quantity: Quantity): string | null;
+  range?(quantity: Quantity): { low: number; high: number };
+  capture?(width: number, height: number, options: { overlay: boolean }):
+    { width: number; height: number; pixels: Uint8ClampedArray };
+}
+
 /** Why a quantity cannot be shown, in one sentence; null: it can. */
-export function whyNot(solution: Solution, quantity: Quantity): string | null {
+export function whyNot(stage: Stage & AbleStage, quantity: Quantity): string | null {
+  if (stage.whyNot) return stage.whyNot(quantity);
+  const solution: Solution = stage.solution;
   if (quantity === 'irradiance' && !solution.materials.some((m) => m.albedo)) {
     return 'The file does not hold its materials’ albedos.';
   }
@@ -45,7 +57,9 @@ export function whyNot(solution: Solution, quantity: Quantity): string | null {
 }
 
 /** A scale that suits a quantity in this solution, its own unit. */
-export function rangeOf(solution: Solution, quantity: Quantity): { low: number; high: number } {
+export function rangeOf(stage: Stage & AbleStage, quantity: Quantity): { low: number; high: number } {
+  if (stage.range) return stage.range(quantity);
+  const { solution } = stage;
   const bright = 1 / solution.exposureScale;
   const lMax = Math.max(0, ...solution.patches.map((p) => p.lobes?.lMax ?? 0));
   const high = { radiance: bright, irradiance: Math.PI * bright, density: 100, degree: lMax || 1, negative: 0.2, hidden: 1, kind: 3 };
@@ -53,15 +67,11 @@ export function rangeOf(solution: Solution, quantity: Quantity): { low: number; 
 }
 
 /** The picture as it is shown, as PNG. */
-export async function capture(stage: Stage): Promise<Blob> {
+export async function capture(stage: Stage & AbleStage): Promise<Blob> {
   const { canvas } = stage;
-  const able = stage as Stage & {
-    capture?: (width: number, height: number, options: { overlay: boolean }) =>
-      { width: number; height: number; pixels: Uint8ClampedArray };
-  };
   let source: HTMLCanvasElement = canvas;
-  if (able.capture) {
-    const { width, height, pixels } = able.capture(canvas.width, canvas.height, { overlay: true });
+  if (stage.capture) {
+    const { width, height, pixels } = stage.capture(canvas.width, canvas.height, { overlay: true });
     source = document.createElement('canvas');
     source.width = width;
     source.height = height;

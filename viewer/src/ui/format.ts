@@ -37,8 +37,9 @@ export function signed(value: number, digits: number): string {
   return `${value < 0 ? kMinus : '+'}${Math.abs(value).toFixed(digits)}`;
 }
 
-export function vector(v: readonly number[], digits = 3): string {
-  return v.map((x) => (Math.abs(x) < 0.5 * 10 ** -digits ? 0 : x).toFixed(digits).replace('-', kMinus)).join(', ');
+/** A direction, to a thousandth. */
+export function vector(v: readonly number[], between = ', '): string {
+  return v.map(metres).join(between);
 }
 
 /** Ticks at round numbers, about `count` of them, from low to high. */

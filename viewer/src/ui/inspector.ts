@@ -33,11 +33,14 @@ function notesOf(i: Inspection): string[] {
   } else if (i.kind === 'mirror') {
     notes.push('Besides this lobe the surface is an ideal mirror; what it mirrors is not part of the lobe.');
   } else if (i.kind === 'sharp') {
-    notes.push('The gloss is sharper than this lobe can hold; `lobe render` gathers it anew.');
+    notes.push('The gloss is sharper than this lobe can hold; “lobe render” gathers it anew.');
   }
   if (i.hidden) notes.push('Hidden: the node lies inside something and has no weight in the picture.');
   return notes;
 }
+
+/** Numbers of a vector stand apart without commas, so that two columns of them fit. */
+const kBetween = '\u2002';
 
 interface Row {
   name: string;
@@ -47,9 +50,9 @@ interface Row {
   of(i: Inspection): { raw: unknown; words: string | Node; small?: string } | null;
 }
 
-function rgb(values: readonly number[]): HTMLElement {
+function rgb(values: readonly number[], figure?: string): HTMLElement {
   const colours = ['#ff7a6b', '#6fd07f', '#7aa5ff'], names = ['red', 'green', 'blue'];
-  return h('span', { className: 'rgb' }, ...values.map((v, c) =>
+  return h('span', { className: 'rgb', 'data-figure': figure, 'data-value': figure && JSON.stringify(values) }, ...values.map((v, c) =>
     h('span', { style: `--c: ${colours[c]}`, title: names[c] }, number(v))));
 }
 
@@ -57,25 +60,27 @@ const rows: readonly Row[] = [
   { name: 'Flux', unit: 'W/m²', figure: 'flux', of: (i) => i.figures && { raw: i.figures.flux, words: rgb(i.figures.flux) } },
   {
     name: 'Peak', unit: 'W/(m² sr)', figure: 'peak',
-    of: (i) => i.figures && { raw: i.figures.peak.luminance, words: number(i.figures.peak.luminance), small: 'luminance' },
+    of: (i) => i.figures && {
+      raw: i.figures.peak.luminance, words: rgb(i.figures.peak.radiance, 'peakRadiance'),
+      small: `luminance ${number(i.figures.peak.luminance)}`,
+    },
   },
-  { name: '', figure: 'peakRadiance', of: (i) => i.figures && { raw: i.figures.peak.radiance, words: rgb(i.figures.peak.radiance) } },
   {
-    name: 'towards', unit: 'θ, φ; world', figure: 'peakDirection',
+    name: 'Direction', unit: 'of the peak: θ, φ; world', figure: 'peakDirection',
     of: (i) => {
       if (!i.figures) return null;
       const { peak } = i.figures, world = toWorld(i.frame, peak.direction);
-      return { raw: world, words: `${peak.thetaDegrees.toFixed(1)}°, ${peak.phiDegrees.toFixed(1)}°`, small: vector(world) };
+      return { raw: world, words: `${peak.thetaDegrees.toFixed(1)}°, ${peak.phiDegrees.toFixed(1)}°`, small: vector(world, kBetween) };
     },
   },
-  { name: 'Negative part', unit: 'of the flux', figure: 'negative', of: (i) => i.figures && { raw: i.figures.negative, words: percent(i.figures.negative) } },
+  { name: 'Negative', unit: 'share of the flux', figure: 'negative', of: (i) => i.figures && { raw: i.figures.negative, words: percent(i.figures.negative) } },
   {
     name: 'Degree', figure: 'lMax', unit: 'shown, of l_max',
     of: (i) => i.whole && i.shown && { raw: i.whole.lMax, words: i.shown.lMax < i.whole.lMax ? `${i.shown.lMax} of ${i.whole.lMax}` : String(i.whole.lMax) },
   },
-  { name: 'Error of the cut', unit: 'relative, L2', figure: 'error', of: (i) => i.whole && { raw: i.error, words: percent(i.error) } },
-  { name: 'Position', unit: 'm', figure: 'position', of: (i) => ({ raw: i.position, words: i.position.map(metres).join(', ') }) },
-  { name: 'Normal', figure: 'normal', of: (i) => ({ raw: i.frame.z, words: vector(i.frame.z) }) },
+  { name: 'Cut error', unit: 'relative, L2', figure: 'error', of: (i) => i.whole && { raw: i.error, words: percent(i.error) } },
+  { name: 'Position', unit: 'm', figure: 'position', of: (i) => ({ raw: i.position, words: h('span', { className: 'triple' }, i.position.map(metres).join(kBetween)) }) },
+  { name: 'Normal', figure: 'normal', of: (i) => ({ raw: i.frame.z, words: h('span', { className: 'triple' }, vector(i.frame.z, kBetween)) }) },
 ];
 
 const seatName = ['first', 'second'] as const;
@@ -143,6 +148,13 @@ export class Inspector {
   setPinned(pinned: boolean): void {
     this.compare.setAttribute('aria-pressed', String(pinned));
     this.show();
+  }
+
+  /** Brings it into the panel's view, where that is small. */
+  reveal(): void {
+    const panel = this.element.parentElement!;
+    const top = this.element.getBoundingClientRect().top - panel.getBoundingClientRect().top;
+    if (panel.clientHeight < 0.5 * window.innerHeight) panel.scrollBy({ top });
   }
 
   followSettings(): void {

@@ -17,7 +17,7 @@ const kLeastOfLog = 1e-3;
 export function scaleFor(
   stage: Stage, quantity: Quantity, given: { low?: number; high?: number; logarithmic?: boolean } = {},
 ): FalseColour {
-  const suits = rangeOf(stage.solution, quantity);
+  const suits = rangeOf(stage, quantity);
   return sound({ quantity, low: given.low ?? suits.low, high: given.high ?? suits.high, logarithmic: given.logarithmic ?? false });
 }
 

@@ -30,7 +30,7 @@ export function showProblem(sentence: string, open: () => void, dismissable: boo
   element.replaceChildren(h('div', {},
     h('h2', {}, 'The solution cannot be shown'),
     h('p', {}, sentence),
-    h('p', { className: 'what' }, 'Drop a file that `lobe solve` wrote onto this page, or open one.'),
+    h('p', { className: 'what' }, 'Drop a file that “lobe solve” wrote onto this page, or open one.'),
     h('div', { className: 'actions' }, first, dismissable
       ? h('button', { type: 'button', onclick: close }, 'Back')
       : h('button', { type: 'button', onclick: () => location.reload() }, 'Try again'))));

@@ -7,7 +7,7 @@ import { formatAddress, parseAddress } from '../stage/address';
 import { Controls } from '../stage/controls';
 import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
-import { kMostDegree, type Quantity } from '../stage/settings';
+import { defaultSettings, kMostDegree, type Quantity } from '../stage/settings';
 import { Stage, type Pose } from '../stage/stage';
 import { boundsOf, poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';
@@ -100,7 +100,7 @@ export class Page {
       }
     }, { signal });
     window.addEventListener('hashchange', () => {
-      if (location.hash !== this.written) this.obey(location.hash);
+      if (location.hash !== this.written) this.obeyAll(location.hash);
     }, { signal });
 
     this.stage.set({ exposure: automaticExposure(solution), degree: kMostDegree });
@@ -163,6 +163,16 @@ export class Page {
     }, kAddressPause);
   }
 
+  /** Of an address that somebody typed or pasted: what it leaves out is as always. */
+  private obeyAll(hash: string): void {
+    const { exposure } = this.stage.settings;
+    this.stage.set({ ...defaultSettings, exposure });
+    this.setPinned(false);
+    this.selection.take(1, null);
+    this.selection.take(0, null);
+    this.obey(hash);
+  }
+
   private obey(hash: string): void {
     const address = parseAddress(hash);
     const named = this.solution.cameras.findIndex((camera) => camera.name === address.camera);
@@ -218,6 +228,7 @@ export class Page {
     this.selection.take(seat, pick);
     const said = this.selection.of(seat);
     if (said) say(`Node ${said.node} on ${said.surface}`);
+    this.inspector.reveal();
   }
 
   private pickMiddle(shift: boolean): void {

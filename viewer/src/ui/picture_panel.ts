@@ -32,7 +32,7 @@ export class PicturePanel {
       id: 'exposure', label: 'Exposure', low: Math.min(-10, Math.floor(automatic - 6)), high: Math.max(10, Math.ceil(automatic + 6)),
       step: 0.05, words: (value) => `${signed(value, 2)} EV`, onInput: (exposure) => stage.set({ exposure }),
     });
-    this.exposure.input.title = 'Stops, as of `lobe render --exposure`; double-click: what suits the scene';
+    this.exposure.input.title = 'Stops, as of “lobe render --exposure”; double-click: what suits the scene';
     this.exposure.input.addEventListener('dblclick', () => stage.set({ exposure: automatic }));
 
     this.curves = new Map(toneCurves.map((curve) => [curve, h('input', {
@@ -41,7 +41,7 @@ export class PicturePanel {
     this.show = h('select', {
       id: 'show', onchange: () => onShow(this.show.value === '' ? null : (this.show.value as Quantity)),
     }, h('option', { value: '' }, 'the picture'), ...quantities.map((quantity) => {
-      const why = whyNot(solution, quantity);
+      const why = whyNot(stage, quantity);
       return h('option', { value: quantity, disabled: why !== null, title: why ?? undefined },
         quantityTexts[quantity].name + (why ? ' (not in this file)' : ''));
     }));

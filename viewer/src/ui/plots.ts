@@ -27,12 +27,12 @@ export function slicesFigure(selection: Selection): HTMLElement {
   const both = [0, 1].map((seat) => selection.of(seat as Seat)).filter((i) => i?.whole);
   const cut = both.some((i) => i!.shown!.lMax < i!.whole!.lMax);
   const negative = both.some((i) => i!.figures!.negativeFraction > 0);
-  const unit = selection.equalPeaks && both.length > 1 ? 'Luminance over the peak of each' : 'Luminance, W/(m² sr)';
+  const unit = selection.equalPeaks && both.length > 1 ? 'Luminance over the peak' : 'Luminance, W/(m² sr)';
   return h('figure', { className: 'plot' },
     markup(slicesSvg(curves(selection, 0), curves(selection, 90), {
       theme: darkTheme, width: 352, label: 'The lobe in the plane of its peak, and across it',
     })),
-    h('figcaption', {}, unit, both.length > 1 ? ', each through its own peak' : '', cut ? '; dotted: the whole lobe' : '',
+    h('figcaption', {}, unit, both.length > 1 ? '; the plane of each one’s own peak' : '', cut ? '; dotted: the whole lobe' : '',
       negative && h('span', { className: 'negative' }, '; blue: below zero')));
 }
 
