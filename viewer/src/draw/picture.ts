@@ -1,28 +1,95 @@
 import {
-  BufferAttribute, BufferGeometry, Color, Mesh, MeshBasicMaterial, Scene, WebGLRenderer, type Group,
-  type PerspectiveCamera,
+  Box3, Color, HalfFloatType, NearestFilter, RGBAFormat, Sphere, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  type Group, type PerspectiveCamera,
 } from 'three';
+import { Problem } from '../solution/problem';
 import type { Solution } from '../solution/solution';
-import type { Settings } from '../stage/settings';
+import type { Quantity, Settings } from '../stage/settings';
 import type { StageStats } from '../stage/stage';
+import type { Precision } from './lobe_textures';
+import { percentiles, valuesOf } from './quantities';
+import { Resident } from './resident';
+import { meterUploads } from './upload_meter';
 
-/** Draws a solution from anywhere. */
+const kSamples = 4;
+
+/** A picture as bytes: RGBA, top row first. */
+export interface Captured {
+  width: number;
+  height: number;
+  pixels: Uint8ClampedArray;
+}
+
+/**
+ * Draws a solution from anywhere. A frame is: the light of glossy nodes towards the eye (NodeLight); the scene in
+ * linear light, in half floats with four samples a pixel (Surfaces, Speculars); exposure and curve, on to the canvas
+ * (Tone); over it, hidden by what is before it, the overlay. All that this needs on the GPU is sent before the first
+ * frame.
+ */
 export class Picture {
+  readonly stats: StageStats = { frames: 0, frameMs: 0, uploadedBytes: 0, drawCalls: 0, triangles: 0 };
+  private readonly gl: WebGL2RenderingContext;
   private readonly renderer: WebGLRenderer;
-  private readonly scene = new Scene();
-  readonly stats: StageStats = { frames: 0, frameMs: 0, uploadedBytes: 0 };
+  private readonly target: WebGLRenderTarget;
+  private readonly box = new Box3();
+  private readonly sphere = new Sphere();
+  private readonly values = new Map<Quantity, Float32Array>();
+  private resident: Resident;
+  private lost = false;
 
-  constructor(canvas: HTMLCanvasElement, solution: Solution) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    this.scene.background = new Color(0);
-    const material = new MeshBasicMaterial({ vertexColors: true });
-    for (const patch of solution.patches) {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute('position', new BufferAttribute(patch.positions, 3));
-      geometry.setAttribute('color', new BufferAttribute(patch.baked, 3));
-      geometry.setIndex(new BufferAttribute(patch.indices, 1));
-      this.scene.add(new Mesh(geometry, material));
+  /** Throws Problem where the browser cannot draw. `onRestored` is called when a GPU that had forgotten everything has
+   *  it again. */
+  constructor(
+    canvas: HTMLCanvasElement, private readonly solution: Solution, onRestored: () => void = () => {},
+    precision: Precision = 'half',
+  ) {
+    const gl = canvas.getContext('webgl2', {
+      alpha: false, antialias: true, preserveDrawingBuffer: true, powerPreference: 'high-performance',
+    });
+    if (!gl) throw new Problem('This browser offers no WebGL 2, which the viewer draws with; perhaps it is switched off.');
+    const floats = gl.getExtension('EXT_color_buffer_float') !== null;
+    if (!floats && !gl.getExtension('EXT_color_buffer_half_float')) {
+      throw new Problem('This browser’s WebGL cannot draw into half floats, in which the viewer adds up light.');
     }
+    this.gl = gl;
+    meterUploads(gl, (bytes) => (this.stats.uploadedBytes += bytes));
+    this.renderer = new WebGLRenderer({ canvas, context: gl });
+    this.renderer.autoClear = false;
+    this.renderer.info.autoReset = false;
+    this.renderer.setClearColor(new Color(0), 0);
+    this.target = new WebGLRenderTarget(1, 1, {
+      format: RGBAFormat, type: HalfFloatType, minFilter: NearestFilter, magFilter: NearestFilter,
+      samples: Math.min(kSamples, gl.getParameter(gl.MAX_SAMPLES) as number),
+    });
+
+    const part = new Box3();
+    for (const { positions } of solution.patches) this.box.union(part.setFromArray(positions));
+    if (solution.faces) this.box.union(part.setFromArray(solution.faces.positions));
+    if (this.box.isEmpty()) this.box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
+    this.box.getBoundingSphere(this.sphere);
+
+    const build = () => new Resident(this.renderer, solution, this.box, floats, precision, (q) => this.numbers(q));
+    this.resident = build();
+    canvas.addEventListener('webglcontextlost', () => (this.lost = true));
+    canvas.addEventListener('webglcontextrestored', () => {
+      // three has begun anew by now, and what the GPU held is gone. It is kept nowhere else: it is made again.
+      this.lost = false;
+      this.resident = build();
+      onRestored();
+    });
+  }
+
+  /** One number a node; computed at its first use. */
+  numbers(quantity: Quantity): Float32Array {
+    let found = this.values.get(quantity);
+    if (!found) this.values.set(quantity, (found = valuesOf(this.solution, quantity)));
+    return found;
+  }
+
+  range(quantity: Quantity): { low: number; high: number } {
+    const values = this.numbers(quantity);
+    // Diffuse nodes have no negative part, and would be most of them.
+    return percentiles(quantity === 'negative' ? values.filter((v) => v > 0) : values);
   }
 
   resize(width: number, height: number, pixelRatio: number): void {
@@ -30,11 +97,57 @@ export class Picture {
     this.renderer.setSize(width, height, false);
   }
 
-  draw(camera: PerspectiveCamera, _settings: Settings, overlay: Group): void {
+  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null): void {
+    if (this.lost) return;
     const start = performance.now();
-    this.scene.add(overlay);
-    this.renderer.render(this.scene, camera);
+    this.renderer.info.reset();
+    this.fitDepth(camera);
+    camera.updateMatrixWorld();
+    const size = this.renderer.getDrawingBufferSize(new Vector2());
+    this.target.setSize(size.x, size.y);
+    this.resident.draw(camera, settings, this.target);
+    this.renderer.setRenderTarget(null);
+    this.resident.show(this.target, settings);
+    const some = overlay?.visible && overlay.children.some((child) => child.visible);
+    this.resident.drawOver(camera, settings, some ? overlay : null);
     ++this.stats.frames;
     this.stats.frameMs = performance.now() - start;
+    this.stats.drawCalls = this.renderer.info.render.calls;
+    this.stats.triangles = this.renderer.info.render.triangles;
+  }
+
+  /** What a canvas of that size would show, read back. The canvas is as before, but has to be drawn again. */
+  capture(camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, width: number, height: number): Captured {
+    const most = Math.min(this.gl.getParameter(this.gl.MAX_RENDERBUFFER_SIZE) as number, 16384);
+    if (!(width >= 1 && height >= 1 && width <= most && height <= most)) {
+      throw new Problem(`A picture of ${width} x ${height} pixels was asked for; here each side can have 1 to ${most}.`);
+    }
+    const { renderer, gl } = this;
+    const size = renderer.getSize(new Vector2()), ratio = renderer.getPixelRatio();
+    const { frames, frameMs } = this.stats;
+    this.resize(width, height, 1);
+    const eye = camera.clone();
+    eye.aspect = width / height;
+    eye.updateProjectionMatrix();
+    this.draw(eye, settings, overlay);
+    const rows = new Uint8ClampedArray(4 * width * height), pixels = new Uint8ClampedArray(rows.length);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(rows.buffer));
+    for (let y = 0; y < height; ++y) {
+      pixels.set(rows.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
+    }
+    this.resize(size.x, size.y, ratio);
+    Object.assign(this.stats, { frames, frameMs });
+    return { width, height, pixels };
+  }
+
+  /** Near and far planes that hold the scene and what may stand out of it a little. */
+  private fitDepth(camera: PerspectiveCamera): void {
+    const { center, radius } = this.sphere;
+    const distance = camera.position.distanceTo(center);
+    const near = Math.max(1e-3 * radius, 0.5 * (distance - 1.5 * radius)), far = distance + 1.5 * radius;
+    if (Math.abs(camera.near / near - 1) < 1e-3 && Math.abs(camera.far / far - 1) < 1e-3) return;
+    camera.near = near;
+    camera.far = far;
+    camera.updateProjectionMatrix();
   }
 }

@@ -4,9 +4,10 @@
  */
 import { Group, PerspectiveCamera, Ray, Vector2, Vector3, Raycaster } from 'three';
 import type { Solution } from '../solution/solution';
-import { Picture } from '../draw/picture';
+import { Picture, type Captured } from '../draw/picture';
+import { whyNot } from '../draw/quantities';
 import { pickAlong, type Pick } from './pick';
-import { defaultSettings, type Settings } from './settings';
+import { defaultSettings, type Quantity, type Settings } from './settings';
 
 /** Where the eye is, what it turns about. */
 export interface Pose {
@@ -23,6 +24,9 @@ export interface StageStats {
   frameMs: number;
   /** Bytes sent to the GPU as textures and buffers since the page was opened. */
   uploadedBytes: number;
+  /** Of the last frame: mirrors' and probes' included. */
+  drawCalls: number;
+  triangles: number;
 }
 
 export class Stage {
@@ -36,8 +40,9 @@ export class Stage {
   private asked = false;
   private readonly listeners = new Set<() => void>();
 
+  /** Throws Problem where the browser cannot draw. */
   constructor(readonly canvas: HTMLCanvasElement, readonly solution: Solution) {
-    this.picture = new Picture(canvas, solution);
+    this.picture = new Picture(canvas, solution, () => this.redraw());
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
   }
@@ -84,6 +89,28 @@ export class Stage {
   /** Draws at once, for screenshots and measurements. */
   drawNow(): void {
     this.picture.draw(this.camera, this.current, this.overlay);
+  }
+
+  /** The present pose at that size, in pixels, without the overlay unless asked for. The wires are settings', and come
+   *  along. */
+  capture(width: number, height: number, { overlay = false } = {}): Captured {
+    const captured = this.picture.capture(this.camera, this.current, overlay ? this.overlay : null, width, height);
+    this.drawNow();
+    return captured;
+  }
+
+  /** Whether a quantity can be shown in false colours; `whyNot` says in a sentence what it lacks. */
+  available(quantity: Quantity): boolean {
+    return this.whyNot(quantity) === null;
+  }
+
+  whyNot(quantity: Quantity): string | null {
+    return whyNot(this.solution, quantity);
+  }
+
+  /** A scale for a quantity, in its unit: the 2nd to the 98th percentile of the nodes. */
+  range(quantity: Quantity): { low: number; high: number } {
+    return this.picture.range(quantity);
   }
 
   /** What is seen at a place of the canvas, CSS pixels from its top left. */

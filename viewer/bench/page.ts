@@ -1,0 +1,22 @@
+/** What measure.mjs drives: a stage without panels. */
+import * as THREE from 'three';
+import { Vector3 } from 'three';
+import { Picture } from '../src/draw/picture';
+import { loadSolution } from '../src/solution/load';
+import type { NamedCamera } from '../src/solution/solution';
+import { Stage, type Pose } from '../src/stage/stage';
+
+function poseOf({ matrix, fovY }: NamedCamera): Pose {
+  const eye = new Vector3().setFromMatrixColumn(matrix, 3), back = new Vector3().setFromMatrixColumn(matrix, 2);
+  return { eye, target: eye.clone().sub(back), up: new Vector3().setFromMatrixColumn(matrix, 1), fov: (fovY * 180) / Math.PI };
+}
+
+async function open(address: string) {
+  const solution = await loadSolution({ solution: address, title: address }, () => {});
+  const stage = new Stage(document.querySelector('canvas')!, solution);
+  const look = (i: number) => stage.setPose(poseOf(solution.cameras[i]));
+  look(0);
+  return { solution, stage, look };
+}
+
+Object.assign(window, { open_: open, Picture, THREE });

@@ -1,0 +1,82 @@
+import { GLSL3, NoBlending, RawShaderMaterial, Vector2, type Texture, type WebGLRenderer } from 'three';
+import { toneCurves, type Settings } from '../stage/settings';
+import { colourTexture, falseColourGlsl } from './colour_map';
+import { FullScreen, fullScreenVertex } from './full_screen';
+
+/** Exact sRGB (IEC 61966-2-1), to and from. */
+export const srgbGlsl = /* glsl */ `
+vec3 encodeSrgb(vec3 v) {
+  return mix(1.055 * pow(v, vec3(1.0 / 2.4)) - 0.055, 12.92 * v, lessThanEqual(v, vec3(0.0031308)));
+}
+vec3 decodeSrgb(vec3 v) {
+  return mix(pow((v + 0.055) / 1.055, vec3(2.4)), v / 12.92, lessThanEqual(v, vec3(0.04045)));
+}
+`;
+
+/** The curves of render/tone.cpp, the letters Hable's. */
+const curveGlsl = /* glsl */ `
+float reinhard(float x) { return x >= 4.0 ? 1.0 : min(1.0, x * (1.0 + x / 16.0) / (1.0 + x)); }
+float hableUnscaled(float x) {
+  const float A = 0.15, B = 0.50, C = 0.10, D = 0.20, E = 0.02, F = 0.30;
+  return (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
+}
+float hable(float x) { return x >= 5.6 ? 1.0 : clamp(hableUnscaled(2.0 * x) / hableUnscaled(11.2), 0.0, 1.0); }
+vec3 curved(vec3 v) {
+  if (curve == 1) return vec3(reinhard(v.r), reinhard(v.g), reinhard(v.b));
+  if (curve == 2) return vec3(hable(v.r), hable(v.g), hable(v.b));
+  return min(v, 1.0);
+}
+`;
+
+/** What the picture's texture holds: light, light to be shown in false colours, or colours of the display. */
+export type Content = 'light' | 'radiance' | 'colours';
+
+/** From scene-linear light to the screen: exposure, curve, sRGB, 8 bits rounded to the nearest. */
+export class Tone {
+  private readonly pass: FullScreen;
+  private readonly colours = colourTexture(null);
+
+  constructor(/** Of the texture: its numbers are radiance times this. */ private readonly unit: number) {
+    this.pass = new FullScreen(new RawShaderMaterial({
+      glslVersion: GLSL3,
+      depthTest: false,
+      depthWrite: false,
+      blending: NoBlending,
+      uniforms: {
+        picture: { value: null }, gain: { value: 1 }, curve: { value: 0 }, content: { value: 0 },
+        colours: { value: this.colours }, scale: { value: new Vector2(0, 1) }, logarithmic: { value: false },
+        kinds: { value: 0 },
+      },
+      vertexShader: fullScreenVertex,
+      fragmentShader: /* glsl */ `
+        precision highp float;
+        uniform highp sampler2D picture;
+        uniform float gain;
+        uniform int curve, content;
+        out vec4 shown;
+        ${falseColourGlsl} ${srgbGlsl} ${curveGlsl}
+        void main() {
+          vec4 pixel = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+          vec3 display;
+          if (content == 0) display = encodeSrgb(curved(max(pixel.rgb, 0.0) * gain));
+          else if (content == 1) display = pixel.a * falseColour(dot(pixel.rgb, vec3(0.2126, 0.7152, 0.0722)) * gain);
+          else display = encodeSrgb(clamp(pixel.rgb, 0.0, 1.0));
+          shown = vec4(floor(display * 255.0 + 0.5) / 255.0, 1.0);
+        }`,
+    }));
+  }
+
+  draw(renderer: WebGLRenderer, picture: Texture, content: Content, settings: Readonly<Settings>): void {
+    const u = this.pass.material.uniforms;
+    u.picture.value = picture;
+    u.content.value = ['light', 'radiance', 'colours'].indexOf(content);
+    u.curve.value = toneCurves.indexOf(settings.curve);
+    // False colours have their own scale, which exposure must not shift.
+    u.gain.value = (content === 'light' ? 2 ** settings.exposure : 1) / this.unit;
+    if (settings.falseColour) {
+      (u.scale.value as Vector2).set(settings.falseColour.low, settings.falseColour.high);
+      u.logarithmic.value = settings.falseColour.logarithmic;
+    }
+    this.pass.draw(renderer);
+  }
+}
