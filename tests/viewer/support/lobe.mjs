@@ -49,6 +49,7 @@ export async function view(file) {
       const found = out.match(/http:\S+/);
       if (found) resolve(found[0]);
     });
+    child.once('error', reject);
     ended.then((code) => reject(new Error(`lobe view ended with ${code}: ${errors}`)));
   });
   return {
