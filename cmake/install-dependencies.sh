@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Lobe needs on Debian 12 (or a relative) and is not there yet. Asks apt nothing when nothing is
-# missing. Arguments: further things wanted, "validator" for the glTF validator's node and npm, "bench" for
-# lobes_benchmark's Google Benchmark.
+# missing. Arguments: further things wanted, "validator" for the glTF validator's node and npm, "browser" for the
+# viewer's tests, "bench" for lobes_benchmark's Google Benchmark.
 set -euo pipefail
 
 packages=(git cmake ninja-build g++ ccache
@@ -20,18 +20,26 @@ missing=()
 for package in "${packages[@]}"; do
   installed "$package" || missing+=("$package")
 done
+# By command, not by package: node often comes from elsewhere, and brings its own npm.
+want_node() {
+  command -v node >/dev/null || missing+=(nodejs)
+  command -v npm >/dev/null || missing+=(npm ca-certificates)
+}
 for want in "$@"; do
   case "$want" in
     validator)
-      # By command, not by package: node often comes from elsewhere, and brings its own npm.
-      command -v node >/dev/null || missing+=(nodejs)
-      command -v npm >/dev/null || missing+=(npm ca-certificates)
+      want_node
+      ;;
+    browser)
+      want_node
+      command -v chromium >/dev/null || missing+=(chromium)
+      installed fonts-dejavu-core || missing+=(fonts-dejavu-core)
       ;;
     bench)
       installed libbenchmark-dev || missing+=(libbenchmark-dev)
       ;;
     *)
-      echo "install-dependencies.sh: unknown argument '$want', expected 'validator' or 'bench'" >&2
+      echo "install-dependencies.sh: unknown argument '$want', expected 'validator', 'browser' or 'bench'" >&2
       exit 2
       ;;
   esac

@@ -1,6 +1,7 @@
 import { GLTFLoader, type GLTF, type GLTFLoaderPlugin, type GLTFParser } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { checkContainer } from './container';
 import { Problem } from './problem';
-import { kExtension, readSolution, type Document, type Parser } from './read';
+import { checkDocument, kExtension, readSolution, type Document, type Parser } from './read';
 import type { Solution } from './solution';
 
 /**
@@ -49,7 +50,22 @@ export async function findView(search: string): Promise<View> {
   return { solution: view.solution, title: typeof view.title === 'string' ? view.title : view.solution };
 }
 
-/** Fetches a file, telling which share of it is here (0..1; undefined: unknown). Names in .gz are unpacked. */
+/** Some servers unpack a .gz on the way, so that its name does not tell. */
+function isGzip(bytes: ArrayBuffer): boolean {
+  const [first, second] = new Uint8Array(bytes, 0, Math.min(2, bytes.byteLength));
+  return first === 0x1f && second === 0x8b;
+}
+
+async function unpack(bytes: ArrayBuffer): Promise<ArrayBuffer> {
+  try {
+    const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip') as never);
+    return await new Response(plain as ReadableStream).arrayBuffer();
+  } catch {
+    throw new Problem('is no whole gzip file');
+  }
+}
+
+/** Fetches a file, telling which share of it is here (0..1; undefined: unknown). What is gzipped is unpacked. */
 async function fetchBytes(address: string, onProgress: (share?: number) => void): Promise<ArrayBuffer> {
   const response = await fetchOrSay(address);
   const total = Number(response.headers.get('Content-Length')) || undefined;
@@ -63,35 +79,24 @@ async function fetchBytes(address: string, onProgress: (share?: number) => void)
       },
     }),
   );
-  const zipped = new URL(address, location.href).pathname.endsWith('.gz');
-  const bytes = zipped ? counted.pipeThrough(new DecompressionStream('gzip') as never) : counted;
+  let bytes: ArrayBuffer;
   try {
-    return await new Response(bytes).arrayBuffer();
+    bytes = await new Response(counted).arrayBuffer();
   } catch {
-    throw new Problem(zipped ? 'is no whole gzip file' : 'broke off while it was fetched');
+    throw new Problem('broke off while it was fetched');
   }
+  return isGzip(bytes) ? unpack(bytes) : bytes;
 }
 
-const kGlbMagic = 0x46546c67;
-
-/** A .glb's own header, so that what is damaged is named before anything tries to read it. */
-function checkContainer(bytes: ArrayBuffer): void {
-  const view = new DataView(bytes);
-  if (bytes.byteLength === 0) throw new Problem('is empty');
-  if (bytes.byteLength < 20 || view.getUint32(0, true) !== kGlbMagic) {
-    // Perhaps JSON; then the loader says what it thinks of it.
-    if (view.getUint8(0) === '{'.charCodeAt(0)) return;
-    throw new Problem('is neither a .glb nor a .gltf file');
-  }
-  const length = view.getUint32(8, true);
-  if (length !== bytes.byteLength) {
-    throw new Problem(`has ${bytes.byteLength} bytes, and its header says ${length}: it is damaged or not whole`);
-  }
+/** The loader follows references of a file without a look at where they lead. */
+function whatLoaderSays(error: Error): string {
+  if (error instanceof TypeError) return `is damaged: something in it refers to what is not there (${error.message})`;
+  return `cannot be read: ${error.message ?? error}`;
 }
 
 /** `folder`: where files are that a .gltf refers to. */
 async function readBytes(bytes: ArrayBuffer, title: string, folder: string): Promise<Solution> {
-  checkContainer(bytes);
+  checkContainer(bytes, checkDocument);
   const loader = new GLTFLoader();
   loader.register((parser) => new DirectionalRadiancePlugin(parser, title));
   const gltf = await loader.parseAsync(bytes, folder);
@@ -103,7 +108,7 @@ async function titled<T>(title: string, work: () => Promise<T>): Promise<T> {
   try {
     return await work();
   } catch (error) {
-    const why = error instanceof Problem ? error.message : `cannot be read: ${(error as Error).message ?? error}`;
+    const why = error instanceof Problem ? error.message : whatLoaderSays(error as Error);
     throw new Problem(`${title}: ${why}`);
   }
 }
@@ -119,16 +124,14 @@ export function loadSolution(view: View, onProgress: (share?: number) => void): 
 /** A file of whoever looks at the page; it is read here and sent nowhere. */
 export function loadFile(file: File): Promise<Solution> {
   return titled(file.name, async () => {
-    const zipped = file.name.endsWith('.gz');
     let bytes: ArrayBuffer;
     try {
-      bytes = await new Response(zipped ? file.stream().pipeThrough(new DecompressionStream('gzip') as never) : file)
-        .arrayBuffer();
+      bytes = await file.arrayBuffer();
     } catch {
-      throw new Problem(zipped ? 'is no whole gzip file' : 'cannot be read from the disk');
+      throw new Problem('cannot be read from the disk');
     }
     // A .gltf alone has its .bin elsewhere, which a page may not look for.
-    return readBytes(bytes, file.name, '');
+    return readBytes(isGzip(bytes) ? await unpack(bytes) : bytes, file.name, '');
   });
 }
 

@@ -48,7 +48,7 @@ export function readMaterial(index: number, gltf: GltfMaterial, lobe: LobeMateri
   const f90 = map(() => metallic + (1 - metallic) * factor);
 
   const through = (extensions.KHR_materials_transmission?.transmissionFactor ?? 0) * (1 - metallic);
-  return {
+  const material: Material = {
     name: gltf.name ?? `material ${index}`,
     kind,
     error: lobe.error ?? 0,
@@ -59,4 +59,9 @@ export function readMaterial(index: number, gltf: GltfMaterial, lobe: LobeMateri
     specular: { f0, f90 },
     transmission: through > 0 ? map((c) => through * base[c]) : null,
   };
+  const { emission, albedo, transmission, error } = material;
+  if (![error, ...emission, ...(albedo ?? []), ...f0, ...f90, ...(transmission ?? [])].every(Number.isFinite)) {
+    throw new Problem(`material "${material.name}" holds a value that is not a number`);
+  }
+  return material;
 }

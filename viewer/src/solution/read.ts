@@ -1,5 +1,5 @@
 /** Reads LOBE_directional_radiance (docs/format.md) of a glTF that three's GLTFLoader has parsed. */
-import { DataUtils, Matrix4, type BufferAttribute } from 'three';
+import { DataUtils, InterleavedBufferAttribute, Matrix4, type BufferAttribute } from 'three';
 import { coefficientCount, toZernike } from '../sh/zernike';
 import { readMaterial, type GltfMaterial, type LobeMaterial } from './material';
 import { Problem } from './problem';
@@ -42,6 +42,7 @@ interface Primitive {
 }
 
 export interface Document {
+  accessors?: object[];
   extensions?: Record<string, DocumentExtension>;
   materials?: GltfMaterial[];
   meshes?: { primitives: Primitive[] }[];
@@ -75,7 +76,27 @@ export function checkDocument(json: Document): DocumentExtension {
   if (extension.basis !== 'H' || extension.frame !== 'duff2017') {
     throw new Problem(`has basis "${extension.basis}" and frame "${extension.frame}", expected "H" and "duff2017"`);
   }
+  for (const member of ['materials', 'surfaceNames'] as const) {
+    if (!Array.isArray(extension[member])) throw new Problem(`has no list "${member}" in its ${kExtension}`);
+  }
   return extension;
+}
+
+const isIndex = (value: unknown, count: number): value is number =>
+  Number.isInteger(value) && (value as number) >= 0 && (value as number) < count;
+
+const isFinitePositive = (value: unknown): value is number => Number.isFinite(value) && (value as number) > 0;
+
+/** The loader hands out the whole bufferView of what lies interleaved with something else. */
+function deinterleave(attribute: InterleavedBufferAttribute): ArrayLike<number> {
+  const { array, stride } = attribute.data;
+  const out = new (array.constructor as typeof Float32Array)(attribute.count * attribute.itemSize);
+  for (let i = 0; i < attribute.count; ++i) {
+    for (let k = 0; k < attribute.itemSize; ++k) {
+      out[i * attribute.itemSize + k] = array[i * stride + attribute.offset + k];
+    }
+  }
+  return out;
 }
 
 /** An accessor's numbers: `count` of them, if given, of `components` each. */
@@ -83,6 +104,8 @@ async function numbers(
   parser: Parser, what: string, accessor: number | undefined, components: number, count?: number,
 ): Promise<Numbers> {
   if (accessor === undefined) throw new Problem(`${what} is missing`);
+  const accessors = parser.json.accessors?.length ?? 0;
+  if (!isIndex(accessor, accessors)) throw new Problem(`${what} is accessor ${accessor}, expected below ${accessors}`);
   const attribute = await parser.getDependency('accessor', accessor);
   if (!attribute || attribute.itemSize !== components || (count !== undefined && attribute.count !== count)) {
     throw new Problem(
@@ -90,7 +113,14 @@ async function numbers(
         `expected ${count ?? 'some'} of ${components}`,
     );
   }
-  return attribute.array as Numbers;
+  return (attribute instanceof InterleavedBufferAttribute ? deinterleave(attribute) : attribute.array) as Numbers;
+}
+
+/** One look at everything: a NaN would blacken the page without a word. Doubles hold the sum of any floats. */
+function allFinite(values: Float32Array): boolean {
+  let sum = 0;
+  for (let i = 0; i < values.length; ++i) sum += Math.abs(values[i]);
+  return Number.isFinite(sum);
 }
 
 async function floats(
@@ -98,10 +128,12 @@ async function floats(
 ): Promise<Float32Array> {
   const array = await numbers(parser, what, accessor, components, count);
   if (!(array instanceof Float32Array)) throw new Problem(`${what} does not hold floats`);
+  if (!allFinite(array)) throw new Problem(`${what} holds a value that is not a number`);
   return array;
 }
 
 function checkIndices(what: string, indices: Numbers, count: number): Uint32Array {
+  if (indices instanceof Float32Array) throw new Problem(`${what} holds floats, expected whole numbers`);
   const out = indices instanceof Uint32Array ? indices : Uint32Array.from(indices);
   const wrong = out.findIndex((i) => i >= count);
   if (wrong >= 0) throw new Problem(`${what} has index ${out[wrong]}, expected below ${count}`);
@@ -123,14 +155,12 @@ async function readPart(
   } else if (raw instanceof Uint16Array) {
     // IEEE half precision, times a power of two of the primitive's own.
     const factor = scale ?? 1;
+    if (!isFinitePositive(factor)) throw new Problem(`${what} has scale ${factor}, expected a positive number`);
     h = Float32Array.from(raw, (bits) => DataUtils.fromHalfFloat(bits) * factor);
   } else {
     throw new Problem(`${what} holds neither floats nor half floats`);
   }
-  // One look at everything: a NaN would blacken the page without a word.
-  let sum = 0;
-  for (let i = 0; i < h.length; ++i) sum += Math.abs(h[i]);
-  if (Number.isNaN(sum)) throw new Problem(`${what} holds a coefficient that is not a number`);
+  if (!allFinite(h)) throw new Problem(`${what} holds a coefficient that is not a number`);
   return { lMax, h };
 }
 
@@ -162,10 +192,10 @@ async function readPatch(parser: Parser, primitive: Primitive, surfaces: number,
   const e = primitive.extensions?.[kExtension] ?? {};
   if (e.patch === undefined) throw new Problem(`a primitive has no "patch" in its ${kExtension}`);
   const what = `patch ${e.patch}`;
-  if (e.material === undefined || !(e.material >= 0 && e.material < materials)) {
+  if (!isIndex(e.material, materials)) {
     throw new Problem(`${what} is of material ${e.material}, expected below ${materials}`);
   }
-  if (e.surface === undefined || !(e.surface >= 0 && e.surface < surfaces)) {
+  if (!isIndex(e.surface, surfaces)) {
     throw new Problem(`${what} is of surface ${e.surface}, expected below ${surfaces}`);
   }
   if (e.side !== 'front' && e.side !== 'back') {
@@ -198,7 +228,7 @@ async function readFaces(parser: Parser, e: DocumentExtension): Promise<Faces | 
   const indices = checkIndices('the faces', await numbers(parser, 'the faces', e.faces.indices, 1), count);
   const material = await numbers(parser, "the faces' materials", e.faces.material, 1, indices.length / 3);
   const materials = e.materials?.length ?? 0;
-  if (material.some((m) => m >= materials)) throw new Problem(`a face is of a material beyond ${materials}`);
+  if (material.some((m) => !isIndex(m, materials))) throw new Problem(`a face is of a material beyond ${materials}`);
   return {
     positions,
     normals: await floats(parser, "the faces' normals", e.faces.normals, 3, count),
@@ -211,11 +241,16 @@ function readCameras(json: Document): NamedCamera[] {
   return (json.nodes ?? []).flatMap((node) => {
     const camera = node.camera === undefined ? undefined : json.cameras?.[node.camera];
     if (!camera?.perspective || node.matrix?.length !== 16) return [];
+    const name = node.name ?? camera.name ?? `camera ${node.camera}`;
+    const { yfov, aspectRatio = 1 } = camera.perspective;
+    if (!node.matrix.every(Number.isFinite) || !isFinitePositive(yfov) || yfov >= Math.PI || !isFinitePositive(aspectRatio)) {
+      throw new Problem(`camera "${name}" is damaged: its matrix, field of view or aspect is no use`);
+    }
     return [{
-      name: node.name ?? camera.name ?? `camera ${node.camera}`,
+      name,
       matrix: new Matrix4().fromArray(node.matrix),
-      fovY: camera.perspective.yfov,
-      aspect: camera.perspective.aspectRatio ?? 1,
+      fovY: yfov,
+      aspect: aspectRatio,
     }];
   });
 }
@@ -225,8 +260,12 @@ export async function readSolution(parser: Parser, title: string): Promise<Solut
   const json = parser.json;
   const extension = checkDocument(json);
   const lobeMaterials = extension.materials ?? [];
-  const materials = lobeMaterials.map((m, i) => readMaterial(i, json.materials?.[i] ?? {}, m));
+  const materials = lobeMaterials.map((m, i) => readMaterial(i, json.materials?.[i] ?? {}, m ?? {}));
   const surfaceNames = extension.surfaceNames ?? [];
+  const exposureScale = extension.exposureScale ?? 1;
+  if (!isFinitePositive(exposureScale)) {
+    throw new Problem(`has exposureScale ${exposureScale}, expected a positive number`);
+  }
 
   const patches: Patch[] = [];
   for (const mesh of json.meshes ?? []) {
@@ -251,6 +290,6 @@ export async function readSolution(parser: Parser, title: string): Promise<Solut
     cameras: readCameras(json),
     nodeCount,
     elementCount,
-    exposureScale: extension.exposureScale ?? 1,
+    exposureScale,
   };
 }

@@ -1,0 +1,13 @@
+/** The JSON of a .glb, and the floats of an accessor of it: just enough to check what others made of them. */
+export function openGlb(bytes) {
+  const length = bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.subarray(20, 20 + length).toString());
+  const binary = bytes.subarray(28 + length);
+  const floats = (accessor) => {
+    const { bufferView, byteOffset = 0, count, type, componentType } = json.accessors[accessor];
+    if (componentType !== 5126) throw new Error(`accessor ${accessor} does not hold floats`);
+    const at = (json.bufferViews[bufferView].byteOffset ?? 0) + byteOffset;
+    return Float32Array.from({ length: count * { SCALAR: 1, VEC3: 3, VEC4: 4 }[type] }, (_, i) => binary.readFloatLE(at + 4 * i));
+  };
+  return { json, floats };
+}
