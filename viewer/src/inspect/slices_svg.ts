@@ -71,7 +71,7 @@ function outline(values: readonly number[], unit: number, at: Place, begin = 0, 
   return points;
 }
 
-function grid(at: Place, phi: number, theme: SlicesTheme): string {
+function grid(at: Place, theme: SlicesTheme): string {
   const parts: string[] = [];
   for (const k of [0.5, 1]) {
     const r = at.radius * k;
@@ -84,12 +84,9 @@ function grid(at: Place, phi: number, theme: SlicesTheme): string {
     const anchor = theta === 0 ? 'middle' : theta > 0 ? 'start' : 'end', gap = at.radius + 4;
     parts.push(`<text x="${(at.x + gap * x).toFixed(1)}" y="${(at.y + gap * y + (theta === 0 ? 0 : 2)).toFixed(1)}" text-anchor="${anchor}" fill="${theme.faint}">${Math.abs(theta)}°</text>`);
   }
-  const around = (degrees: number) => ((Math.round(degrees) % 360) + 360) % 360;
-  for (const [k, anchor] of [[0.5, 'middle'], [1, 'middle']] as const) {
-    parts.push(`<text x="${at.x + at.radius * k}" y="${at.y + 13}" text-anchor="${anchor}" fill="${theme.faint}">${short(at.full * k)}</text>`);
+  for (const k of [0, 0.5, 1]) {
+    parts.push(`<text x="${at.x + at.radius * k}" y="${at.y + 13}" text-anchor="middle" fill="${theme.faint}">${short(at.full * k)}</text>`);
   }
-  parts.push(`<text x="${at.x - at.radius}" y="${at.y + 13}" text-anchor="middle" fill="${theme.faint}">φ ${around(phi + 180)}°</text>`);
-  parts.push(`<text x="${at.x}" y="${at.y + 13}" text-anchor="middle" fill="${theme.faint}">0</text>`);
   return parts.join('');
 }
 
@@ -119,11 +116,12 @@ export function sliceSvg(
   curves: readonly Curve[], title: string, theme: SlicesTheme, width: number, full: number, x = 0, y = 0,
 ): string {
   const at: Place = { x: x + width / 2, y: y + width / 2 - 4, radius: width / 2 - 19, full };
-  const phi = curves[0].slice.phiDegrees;
+  // To the right; where two lobes are drawn, each has its own.
+  const turn = curves.length === 1 ? `, φ ${Math.round(curves[0].slice.phiDegrees)}° →` : '';
   return (
-    `<g font-size="10" font-family="${theme.font}">` + grid(at, phi, theme) +
+    `<g font-size="10" font-family="${theme.font}">` + grid(at, theme) +
     curves.map((c) => curve(c, at, theme, curves.length === 1)).join('') +
-    `<text x="${at.x}" y="${at.y + 29}" text-anchor="middle" fill="${theme.ink}" font-size="11">${escape(title)}</text></g>`
+    `<text x="${at.x}" y="${at.y + 29}" text-anchor="middle" fill="${theme.ink}" font-size="11">${escape(title)}${turn}</text></g>`
   );
 }
 
