@@ -2,7 +2,7 @@
 import type { FalseColour, Quantity } from '../stage/settings';
 import type { Stage } from '../stage/stage';
 import { h } from './dom';
-import { categories, colourAt, rangeOf, type Colour } from './drawing';
+import { categories, colourAt, type Colour } from '../draw/colour_map';
 import { plain, ticks } from './format';
 import { quantityTexts } from './quantity_texts';
 
@@ -17,7 +17,7 @@ const kLeastOfLog = 1e-3;
 export function scaleFor(
   stage: Stage, quantity: Quantity, given: { low?: number; high?: number; logarithmic?: boolean } = {},
 ): FalseColour {
-  const suits = rounded(rangeOf(stage, quantity));
+  const suits = rounded(stage.range(quantity));
   return sound({ quantity, low: given.low ?? suits.low, high: given.high ?? suits.high, logarithmic: given.logarithmic ?? false });
 }
 

@@ -12,7 +12,7 @@ import { Stage, type Pose } from '../stage/stage';
 import { boundsOf, poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';
 import { download, region } from './dom';
-import { capture } from './drawing';
+import { screenshot } from './screenshot';
 import { signed, stem } from './format';
 import { fillHelp } from './help';
 import { Inspector } from './inspector';
@@ -297,7 +297,7 @@ export class Page {
     const parts = [stem(this.solution.title), camera, this.selection.node === null ? null : `node${this.selection.node}`];
     const name = `${parts.filter((part) => part !== null && part !== '').join('_')}.png`;
     try {
-      download(name, await capture(this.stage));
+      download(name, await screenshot(this.stage));
       say(`Saved ${name}`);
     } catch (error) {
       say(`No picture: ${(error as Error).message}`);

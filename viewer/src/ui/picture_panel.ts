@@ -4,7 +4,6 @@ import { quantities } from '../stage/address';
 import { toneCurves, type Quantity, type ToneCurve } from '../stage/settings';
 import type { Stage } from '../stage/stage';
 import { h } from './dom';
-import { whyNot } from './drawing';
 import { signed } from './format';
 import { quantityTexts } from './quantity_texts';
 import { slider, type Slider } from './slider';
@@ -41,7 +40,7 @@ export class PicturePanel {
     this.show = h('select', {
       id: 'show', onchange: () => onShow(this.show.value === '' ? null : (this.show.value as Quantity)),
     }, h('option', { value: '' }, 'the picture'), ...quantities.map((quantity) => {
-      const why = whyNot(stage, quantity);
+      const why = stage.whyNot(quantity);
       return h('option', { value: quantity, disabled: why !== null, title: why ?? undefined },
         quantityTexts[quantity].name + (why ? ' (not in this file)' : ''));
     }));
