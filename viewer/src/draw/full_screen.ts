@@ -1,4 +1,6 @@
-import { BufferAttribute, BufferGeometry, Mesh, OrthographicCamera, Sphere, type RawShaderMaterial, type WebGLRenderer } from 'three';
+import {
+  BufferAttribute, BufferGeometry, Mesh, OrthographicCamera, Sphere, type RawShaderMaterial, type WebGLRenderer,
+} from 'three';
 
 const camera = new OrthographicCamera();
 

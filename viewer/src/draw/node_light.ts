@@ -1,4 +1,7 @@
-import { FloatType, GLSL3, HalfFloatType, NearestFilter, RawShaderMaterial, RGBAFormat, Vector3, WebGLRenderTarget, type WebGLRenderer } from 'three';
+import {
+  FloatType, GLSL3, HalfFloatType, NearestFilter, RawShaderMaterial, RGBAFormat, Vector3, WebGLRenderTarget,
+  type WebGLRenderer,
+} from 'three';
 import { FullScreen, fullScreenVertex } from './full_screen';
 import type { Layout } from './layout';
 import { kNodesInRow, lobeGlsl, type LobeTextures } from './lobe_textures';
@@ -14,8 +17,8 @@ import { kNodesInRow, lobeGlsl, type LobeTextures } from './lobe_textures';
  *     Σ φ_k (L_k(ω_k) + ½ ∇L_k · (ω - ω_k))
  *
  * leaves a third: the half makes linear interpolation with slopes at its ends exact for squares. So each channel's pixel is
- * (½ ∇L, L - ½ ∇L · ω_k), which is linear in the nodes, and a fragment adds the product of the first with its own ω. ∇ is
- * over the disc, in world axes.
+ * (½ ∇L, L - ½ ∇L · ω_k), which is linear in the nodes, and a fragment adds the product of the first with its own ω.
+ * ∇ is over the disc, in world axes.
  */
 export class NodeLight {
   readonly target: WebGLRenderTarget;

@@ -117,7 +117,9 @@ export class Picture {
   }
 
   /** What a canvas of that size would show, read back. The canvas is as before, but has to be drawn again. */
-  capture(camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, width: number, height: number): Captured {
+  capture(
+    camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, width: number, height: number,
+  ): Captured {
     const most = Math.min(this.gl.getParameter(this.gl.MAX_RENDERBUFFER_SIZE) as number, 16384);
     if (!(width >= 1 && height >= 1 && width <= most && height <= most)) {
       throw new Problem(`A picture of ${width} x ${height} pixels was asked for; here each side can have 1 to ${most}.`);

@@ -2,7 +2,7 @@ import { Matrix4, PerspectiveCamera, Plane, Vector3, Vector4 } from 'three';
 
 /** x -> what a mirror shows at x. */
 export function reflectionIn({ normal: n, constant }: Plane): Matrix4 {
-  const row = (a: number, i: number) => [i === 0 ? 1 : 0, i === 1 ? 1 : 0, i === 2 ? 1 : 0].map((one, j) => one - 2 * a * n.getComponent(j));
+  const row = (a: number, i: number) => [0, 1, 2].map((j) => (i === j ? 1 : 0) - 2 * a * n.getComponent(j));
   const [x, y, z] = [row(n.x, 0), row(n.y, 1), row(n.z, 2)], t = -2 * constant;
   return new Matrix4().set(
     x[0], x[1], x[2], t * n.x, y[0], y[1], y[2], t * n.y, z[0], z[1], z[2], t * n.z, 0, 0, 0, 1);

@@ -61,8 +61,8 @@ export class Resident {
     this.content = !colour ? 'light' : colour.quantity === 'radiance' ? 'radiance' : 'colours';
     const quantity = this.content === 'colours' ? colour!.quantity : null;
     if (colour && quantity) this.surfaces.setScale(quantity, colour.low, colour.high, colour.logarithmic);
-    const shownBefore = before?.falseColour && before.falseColour.quantity !== 'radiance' ? before.falseColour.quantity : null;
-    if (quantity !== shownBefore) {
+    const was = before?.falseColour?.quantity ?? null;
+    if (quantity !== (was === 'radiance' ? null : was)) {
       this.surfaces.showNumbers(quantity ? bySlot(this.layout, this.valuesOf(quantity)) : null);
       this.speculars?.showNumbers(quantity !== null);
     }

@@ -36,7 +36,8 @@ export function mirrorsOf(solution: Solution, layout: Layout, diagonal: number):
     part.patches.push(placed);
     part.box.union(new Box3().setFromArray(patch.positions as never));
     for (let e = 0; e < patch.indices.length; e += 3) {
-      part.area += area(...([0, 1, 2].map((k) => new Vector3().fromArray(patch.positions, 3 * patch.indices[e + k])) as Corners));
+      const corners = [0, 1, 2].map((k) => new Vector3().fromArray(patch.positions, 3 * patch.indices[e + k]));
+      part.area += area(...(corners as Corners));
     }
   }
   return parts;

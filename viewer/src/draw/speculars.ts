@@ -19,6 +19,7 @@ import {
   type PerspectiveCamera, type Side, type WebGLRenderer,
 } from 'three';
 import type { Solution } from '../solution/solution';
+import { kBrightest } from './backdrop';
 import { elementsOf, isFlat, type Layout } from './layout';
 import { MirroredCamera } from './reflection';
 import { glassOf, isSame, mirrorsOf, type SpecularPart } from './specular_parts';
@@ -156,7 +157,7 @@ export class Speculars {
     for (const mesh of this.bases) mesh.visible = !numbers;
   }
 
-  /** Renders what the coming picture reflects. `render` draws the scene from a camera to the target that is set. */
+  /** Renders what the coming picture reflects. `beforeEye` makes ready what depends on where the eye is. */
   prepare(
     renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, width: number, height: number, samples: number,
     beforeEye: (eye: Vector3) => void,
@@ -170,7 +171,8 @@ export class Speculars {
     }
 
     const { box } = this, nowhere = new Vector4(0, 0, 0, 1e30);
-    const mirrorPlane = (this.surfaces.backdrop.material as RawShaderMaterial).uniforms.mirrorPlane?.value as Vector4 | undefined;
+    const backdrop = (this.surfaces.backdrop.material as RawShaderMaterial).uniforms;
+    const mirrorPlane = backdrop.mirrorPlane?.value as Vector4 | undefined;
     const chosen = this.choose(camera);
     chosen.forEach(({ plane, parts }, i) => {
       const view = (this.views[i] ??= {
@@ -258,7 +260,8 @@ export class Speculars {
   private renderProbes(renderer: WebGLRenderer, scene: Scene, beforeEye: (eye: Vector3) => void): void {
     this.probesAreOld = false;
     const backs = this.surfaces.backdrop.visible;
-    const seeThrough = (this.surfaces.backdrop.material as RawShaderMaterial).uniforms.seeThrough?.value as boolean | undefined;
+    const backdrop = (this.surfaces.backdrop.material as RawShaderMaterial).uniforms;
+    const seeThrough = backdrop.seeThrough?.value as boolean | undefined;
     this.surfaces.seeThrough(true);
     for (const { part, meshes, uniforms } of this.parts) {
       uniforms.source.value = Source.none;
@@ -291,7 +294,7 @@ export class Speculars {
       ${reflectionGlsl}
       void main() {
         vec3 mirrored = fresnel(place, up) * lookup(place, up);
-        pixel = vec4(min(stored(leaving()) + mirrored, 60000.0), 1.0);
+        pixel = vec4(min(stored(leaving()) + mirrored, ${kBrightest}.0), 1.0);
       }`,
       `out vec3 place;${curved ? ' in vec3 normal; out vec3 up;' : ''}`,
       `place = position;${curved ? ' up = normal;' : ''}`,
