@@ -1,5 +1,5 @@
 import {
-  Box3, Color, HalfFloatType, NearestFilter, RGBAFormat, Sphere, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  Box3, Color, HalfFloatType, LinearFilter, NearestFilter, RGBAFormat, Sphere, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
   type Group, type PerspectiveCamera,
 } from 'three';
 import { Problem } from '../solution/problem';
@@ -12,6 +12,8 @@ import { Resident } from './resident';
 import { meterUploads } from './upload_meter';
 
 const kSamples = 4;
+/** Coarse pictures have so many pixels for one, along each side, and one sample in each. */
+const kCoarse = 0.5;
 
 /** A picture as bytes: RGBA, top row first. */
 export interface Captured {
@@ -30,7 +32,8 @@ export class Picture {
   readonly stats: StageStats = { frames: 0, frameMs: 0, uploadedBytes: 0, drawCalls: 0, triangles: 0 };
   private readonly gl: WebGL2RenderingContext;
   private readonly renderer: WebGLRenderer;
-  private readonly target: WebGLRenderTarget;
+  private readonly fine: WebGLRenderTarget;
+  private readonly coarse: WebGLRenderTarget;
   private readonly box = new Box3();
   private readonly sphere = new Sphere();
   private readonly values = new Map<Quantity, Float32Array>();
@@ -57,10 +60,10 @@ export class Picture {
     this.renderer.autoClear = false;
     this.renderer.info.autoReset = false;
     this.renderer.setClearColor(new Color(0), 0);
-    this.target = new WebGLRenderTarget(1, 1, {
-      format: RGBAFormat, type: HalfFloatType, minFilter: NearestFilter, magFilter: NearestFilter,
-      samples: Math.min(kSamples, gl.getParameter(gl.MAX_SAMPLES) as number),
-    });
+    const light = { format: RGBAFormat, type: HalfFloatType, minFilter: NearestFilter } as const;
+    const samples = Math.min(kSamples, gl.getParameter(gl.MAX_SAMPLES) as number);
+    this.fine = new WebGLRenderTarget(1, 1, { ...light, magFilter: NearestFilter, samples });
+    this.coarse = new WebGLRenderTarget(1, 1, { ...light, magFilter: LinearFilter });
 
     const part = new Box3();
     for (const { positions } of solution.patches) this.box.union(part.setFromArray(positions));
@@ -97,17 +100,18 @@ export class Picture {
     this.renderer.setSize(width, height, false);
   }
 
-  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null): void {
+  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, coarsely = false): void {
     if (this.lost) return;
     const start = performance.now();
     this.renderer.info.reset();
     this.fitDepth(camera);
     camera.updateMatrixWorld();
     const size = this.renderer.getDrawingBufferSize(new Vector2());
-    this.target.setSize(size.x, size.y);
-    this.resident.draw(camera, settings, this.target);
+    const target = coarsely ? this.coarse : this.fine, scale = coarsely ? kCoarse : 1;
+    target.setSize(Math.ceil(size.x * scale), Math.ceil(size.y * scale));
+    this.resident.draw(camera, settings, target);
     this.renderer.setRenderTarget(null);
-    this.resident.show(this.target, settings);
+    this.resident.show(target, settings, size);
     const some = overlay?.visible && overlay.children.some((child) => child.visible);
     this.resident.drawOver(camera, settings, some ? overlay : null);
     ++this.stats.frames;

@@ -1,4 +1,4 @@
-import { Mesh, Scene, Vector3, type Box3, type PerspectiveCamera, type WebGLRenderer, type WebGLRenderTarget } from 'three';
+import { Mesh, Scene, Vector3, type Vector2, type Box3, type PerspectiveCamera, type WebGLRenderer, type WebGLRenderTarget } from 'three';
 import type { Solution } from '../solution/solution';
 import type { Settings } from '../stage/settings';
 import { bySlot, layOut, type Layout } from './layout';
@@ -80,9 +80,9 @@ export class Resident {
     renderer.render(this.scene, camera);
   }
 
-  /** From `target` to the render target that is set. */
-  show(target: WebGLRenderTarget, settings: Readonly<Settings>): void {
-    this.tone.draw(this.renderer, target.texture, this.content, settings);
+  /** From `target` to the render target that is set, of `size` pixels. */
+  show(target: WebGLRenderTarget, settings: Readonly<Settings>, size: Vector2): void {
+    this.tone.draw(this.renderer, target.texture, this.content, settings, size);
   }
 
   /** Over the picture: the scene's depth once more, without colours, and what it may hide. */

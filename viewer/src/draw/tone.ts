@@ -43,7 +43,7 @@ export class Tone {
       depthWrite: false,
       blending: NoBlending,
       uniforms: {
-        picture: { value: null }, gain: { value: 1 }, curve: { value: 0 }, content: { value: 0 },
+        picture: { value: null }, size: { value: new Vector2() }, gain: { value: 1 }, curve: { value: 0 }, content: { value: 0 },
         colours: { value: this.colours }, scale: { value: new Vector2(0, 1) }, logarithmic: { value: false },
         kinds: { value: 0 },
       },
@@ -51,12 +51,13 @@ export class Tone {
       fragmentShader: /* glsl */ `
         precision highp float;
         uniform highp sampler2D picture;
+        uniform vec2 size;
         uniform float gain;
         uniform int curve, content;
         out vec4 shown;
         ${falseColourGlsl} ${srgbGlsl} ${curveGlsl}
         void main() {
-          vec4 pixel = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+          vec4 pixel = texture(picture, gl_FragCoord.xy / size);
           vec3 display;
           if (content == 0) display = encodeSrgb(curved(max(pixel.rgb, 0.0) * gain));
           else if (content == 1) display = pixel.a * falseColour(dot(pixel.rgb, vec3(0.2126, 0.7152, 0.0722)) * gain);
@@ -66,9 +67,10 @@ export class Tone {
     }));
   }
 
-  draw(renderer: WebGLRenderer, picture: Texture, content: Content, settings: Readonly<Settings>): void {
+  draw(renderer: WebGLRenderer, picture: Texture, content: Content, settings: Readonly<Settings>, size: Vector2): void {
     const u = this.pass.material.uniforms;
     u.picture.value = picture;
+    (u.size.value as Vector2).copy(size);
     u.content.value = ['light', 'radiance', 'colours'].indexOf(content);
     u.curve.value = toneCurves.indexOf(settings.curve);
     // False colours have their own scale, which exposure must not shift.

@@ -6,6 +6,7 @@ import { Group, PerspectiveCamera, Ray, Vector2, Vector3, Raycaster } from 'thre
 import type { Solution } from '../solution/solution';
 import { Picture, type Captured } from '../draw/picture';
 import { whyNot } from '../draw/quantities';
+import { Pace } from './pace';
 import { pickAlong, type Pick } from './pick';
 import { defaultSettings, type Quantity, type Settings } from './settings';
 
@@ -38,6 +39,7 @@ export class Stage {
   private readonly picture: Picture;
   private current: Settings = { ...defaultSettings };
   private asked = false;
+  private readonly pace = new Pace(() => this.drawNow());
   private readonly listeners = new Set<() => void>();
 
   /** Throws Problem where the browser cannot draw. */
@@ -76,17 +78,18 @@ export class Stage {
     return () => this.listeners.delete(listener);
   }
 
-  /** Draws once, soon. Nothing is drawn while nothing changes. */
+  /** Draws once, soon; coarsely for now, where frames come late. Nothing is drawn while nothing changes. */
   redraw(): void {
     if (this.asked) return;
     this.asked = true;
+    const since = performance.now();
     requestAnimationFrame(() => {
       this.asked = false;
-      this.drawNow();
+      this.picture.draw(this.camera, this.current, this.overlay, this.pace.isCoarse(performance.now() - since));
     });
   }
 
-  /** Draws at once, for screenshots and measurements. */
+  /** Draws at once, finely: for screenshots and measurements. */
   drawNow(): void {
     this.picture.draw(this.camera, this.current, this.overlay);
   }
