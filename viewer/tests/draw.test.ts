@@ -11,7 +11,7 @@ import type { Material, Patch, Solution } from '../src/solution/solution';
 
 const material = (change: Partial<Material> = {}): Material => ({
   name: 'm', kind: 'none', error: 0, emission: [0, 0, 0], doubleSided: false, albedo: [0.5, 0.5, 0.5],
-  specular: { f0: [0, 0, 0], f90: [1, 1, 1] }, transmission: null, ...change,
+  specular: { f0: [0, 0, 0], f90: [1, 1, 1] }, transmission: null, extinction: [0, 0, 0], ...change,
 });
 
 /** A unit square in two elements at height y, facing up. `z` of a channel, the same for all nodes and channels. */
@@ -199,5 +199,18 @@ describe('Glass', () => {
     expect(parts.length).toBe(2);
     expect(parts.map((p) => p.plane !== null)).toEqual([true, false]);
     expect(parts.map((p) => p.glass!.positions.length)).toEqual([18, 18]);
+  });
+
+  it('has a volume if it is a body', () => {
+    const solution = solutionOf([], [material({ transmission: [1, 1, 1] })]);
+    // A tetrahedron with three edges of length 2 at a right angle, far from the origin.
+    const positions = Float32Array.from([5, 5, 5, 7, 5, 5, 5, 7, 5, 5, 5, 7]);
+    solution.faces = {
+      positions, normals: new Float32Array(12), indices: Uint32Array.from([0, 2, 1, 0, 3, 2, 0, 1, 3, 1, 2, 3]),
+      material: [0, 0, 0, 0],
+    };
+    const [part] = glassOf(solution, 6);
+    expect(part.volume).toBeCloseTo(8 / 6, 5);
+    expect(part.area).toBeCloseTo(6 + 2 * Math.sqrt(3), 5);
   });
 });

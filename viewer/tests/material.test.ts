@@ -47,6 +47,15 @@ describe('A material', () => {
     expect(read({ pbrMetallicRoughness: { ...glass, metallicFactor: 1 }, extensions }).transmission).toBeNull();
   });
 
+  it('dims by length inside of bodies, not in panes', () => {
+    const volume = { attenuationColor: [0.25, 1, 0.5], attenuationDistance: 0.5 };
+    const read1 = (thicknessFactor: number) =>
+      read({ extensions: { KHR_materials_volume: { ...volume, thicknessFactor } } }).extinction;
+    close(read1(1), [4 * Math.LN2, 0, 2 * Math.LN2]);
+    close(read1(0), [0, 0, 0]);
+    close(read({}).extinction, [0, 0, 0]);
+  });
+
   it('has two sides if it says so, and if light comes through it', () => {
     expect(read({}).doubleSided).toBe(false);
     expect(read({ doubleSided: true }).doubleSided).toBe(true);

@@ -10,6 +10,8 @@ export interface SpecularPart {
   box: Box3;
   /** Square metres. */
   area: number;
+  /** Cubic metres inside: 0 but of closed bodies of glass. */
+  volume: number;
   /** Of a mirror. */
   patches: PlacedPatch[];
   /** Of glass: three corners a triangle, three floats each. */
@@ -32,7 +34,7 @@ export function mirrorsOf(solution: Solution, layout: Layout, diagonal: number):
     let part = parts.find(
       (p) => p.material === patch.material && p.plane && plane && isSame(p.plane, plane, diagonal) &&
         isFlat(p.patches[0].patch) === isFlat(patch));
-    if (!part) parts.push((part = { material: patch.material, plane, box: new Box3(), area: 0, patches: [], glass: null }));
+    if (!part) parts.push((part = { material: patch.material, plane, box: new Box3(), area: 0, volume: 0, patches: [], glass: null }));
     part.patches.push(placed);
     part.box.union(new Box3().setFromArray(patch.positions as never));
     for (let e = 0; e < patch.indices.length; e += 3) {
@@ -81,8 +83,9 @@ function pieces(faces: Faces, glass: readonly number[]): number[][] {
   }
   const found = new Map<string, number[]>();
   for (const f of glass) {
-    const key = root(keyOf(f, 0));
-    found.set(key, [...(found.get(key) ?? []), f]);
+    const key = root(keyOf(f, 0)), piece = found.get(key);
+    if (piece) piece.push(f);
+    else found.set(key, [f]);
   }
   return [...found.values()];
 }
@@ -90,7 +93,8 @@ function pieces(faces: Faces, glass: readonly number[]): number[][] {
 function glassPart(faces: Faces, piece: readonly number[], diagonal: number): SpecularPart {
   const positions = new Float32Array(9 * piece.length), normals = new Float32Array(9 * piece.length);
   const part: SpecularPart = {
-    material: faces.material[piece[0]], plane: null, box: new Box3(), area: 0, patches: [], glass: { positions, normals },
+    material: faces.material[piece[0]], plane: null, box: new Box3(), area: 0, volume: 0, patches: [],
+    glass: { positions, normals },
   };
   let flat = true;
   piece.forEach((f, at) => {
@@ -102,10 +106,12 @@ function glassPart(faces: Faces, piece: readonly number[], diagonal: number): Sp
     }) as Corners;
     corners.forEach((c) => part.box.expandByPoint(c));
     part.area += area(...corners);
+    part.volume += corners[0].dot(corners[1].clone().cross(corners[2])) / 6;
     const plane = new Plane().setFromCoplanarPoints(...corners);
     part.plane ??= plane;
     flat &&= isSame(part.plane, plane, diagonal) || isSame(part.plane, plane.negate(), diagonal);
   });
   if (!flat) part.plane = null;
+  part.volume = flat ? 0 : Math.abs(part.volume);
   return part;
 }

@@ -9,8 +9,8 @@
  *   Mirrors in a probe show their base alone, and glass in it is not there.
  *
  * Glass lets see what lies behind straight through, without refraction: each surface passes transmission × (1 - F) and
- * adds F × what it reflects; colour of the bulk (attenuation by length) is left out. Parts are drawn from far to
- * near, each its far sides first.
+ * adds F × what it reflects. Coloured bodies dim by their mean chord, whatever the way through them: half of it at each
+ * of the two surfaces that are crossed. Parts are drawn from far to near, each its far sides first.
  */
 import {
   AddEquation, BackSide, BufferAttribute, BufferGeometry, CubeCamera, CustomBlending, DoubleSide, DstColorFactor,
@@ -18,7 +18,7 @@ import {
   Scene, Vector2, Vector3, Vector4, WebGLCubeRenderTarget, WebGLRenderTarget, ZeroFactor, type Box3, type IUniform,
   type PerspectiveCamera, type Side, type WebGLRenderer,
 } from 'three';
-import type { Solution } from '../solution/solution';
+import type { Material, Rgb, Solution } from '../solution/solution';
 import { kBrightest } from './backdrop';
 import { elementsOf, isFlat, type Layout } from './layout';
 import { MirroredCamera } from './reflection';
@@ -126,7 +126,7 @@ export class Speculars {
         probeAt: { value: probe.at },
       };
       const meshes = part.glass
-        ? this.glassMeshes(part, solution.materials[part.material].transmission!, uniforms)
+        ? this.glassMeshes(part, passedAtSurface(part, solution.materials[part.material]), uniforms)
         : [this.mirrorMesh(part, uniforms)];
       for (const mesh of meshes) scene.add(mesh);
       this.parts.push({ part, meshes, uniforms, probe });
@@ -349,6 +349,12 @@ export class Speculars {
     mesh.renderOrder = 1e6;
     return [mesh];
   }
+}
+
+/** The share of light that one surface of a piece of glass lets go on, but for Fresnel's factor. */
+function passedAtSurface({ area, volume }: SpecularPart, { transmission, extinction }: Material): Rgb {
+  const meanChord = (4 * volume) / area;  // of a convex body: Cauchy
+  return transmission!.map((t, c) => t * Math.exp((-extinction[c] * meanChord) / 2)) as Rgb;
 }
 
 function normalsBySlot(layout: Layout): BufferAttribute {

@@ -12,6 +12,7 @@ export interface GltfMaterial {
     KHR_materials_ior?: { ior?: number };
     KHR_materials_specular?: { specularFactor?: number; specularColorFactor?: number[] };
     KHR_materials_transmission?: { transmissionFactor?: number };
+    KHR_materials_volume?: { thicknessFactor?: number; attenuationColor?: number[]; attenuationDistance?: number };
     KHR_materials_diffuse_transmission?: unknown;
   };
 }
@@ -29,6 +30,15 @@ const rgb = (values: number[] | undefined, otherwise: Rgb): Rgb =>
   values && values.length >= 3 ? [values[0], values[1], values[2]] : otherwise;
 
 const map = (f: (channel: 0 | 1 | 2) => number): Rgb => [f(0), f(1), f(2)];
+
+/** attenuationColor^(length / attenuationDistance) is exp(-extinction · length). No thickness: a pane, which has no inside. */
+function extinctionOf(volume: NonNullable<GltfMaterial['extensions']>['KHR_materials_volume']): Rgb {
+  const { thicknessFactor = 0, attenuationColor, attenuationDistance = Infinity } = volume ?? {};
+  if (!(thicknessFactor > 0)) return [0, 0, 0];
+  const colour = rgb(attenuationColor, [1, 1, 1]);
+  // Black takes all there is: as much as a float can say will do.
+  return map((c) => -Math.log(Math.max(colour[c], 1e-30)) / attenuationDistance + 0);
+}
 
 export function readMaterial(index: number, gltf: GltfMaterial, lobe: LobeMaterial): Material {
   const kind = kinds.find((k) => k === lobe.kind);
@@ -58,9 +68,10 @@ export function readMaterial(index: number, gltf: GltfMaterial, lobe: LobeMateri
     albedo: lobe.albedo ? rgb(lobe.albedo, [0, 0, 0]) : null,
     specular: { f0, f90 },
     transmission: through > 0 ? map((c) => through * base[c]) : null,
+    extinction: extinctionOf(extensions.KHR_materials_volume),
   };
-  const { emission, albedo, transmission, error } = material;
-  if (![error, ...emission, ...(albedo ?? []), ...f0, ...f90, ...(transmission ?? [])].every(Number.isFinite)) {
+  const { emission, albedo, transmission, extinction, error } = material;
+  if (![error, ...emission, ...(albedo ?? []), ...f0, ...f90, ...(transmission ?? []), ...extinction].every(Number.isFinite)) {
     throw new Problem(`material "${material.name}" holds a value that is not a number`);
   }
   return material;

@@ -30,6 +30,9 @@ export interface Material {
   specular: Specular;
   /** The share of light that goes straight through under Fresnel's factor; null: not glass. */
   transmission: Rgb | null;
+  /** What a body of glass takes from light inside it, per metre: light falls as exp(-extinction · length). Zero: clear,
+   *  or a pane. */
+  extinction: Rgb;
 }
 
 /** The lobes of a patch's nodes: radiance reflected towards ω is Σ_k z_k Z_k(ω). */
