@@ -1,7 +1,7 @@
 import { Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { formatAddress, parseAddress, type Shown } from '../src/stage/address';
-import { defaultSettings } from '../src/stage/settings';
+import { defaultSettings } from '../src/draw/settings';
 
 const pose = { eye: new Vector3(1, 2.5, -3), target: new Vector3(0, 1, 0), up: new Vector3(0, 1, 0), fov: 39.6 };
 const shown: Shown = { pose, settings: defaultSettings, node: null, compare: null, lMax: 20 };

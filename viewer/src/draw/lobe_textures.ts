@@ -12,7 +12,7 @@ import {
 } from 'three';
 import { zernikeScale, zernikeStep } from '../sh/zernike';
 import type { Solution } from '../solution/solution';
-import { kMostDegree } from '../stage/settings';
+import { kMostDegree } from './settings';
 import { halfScale, toHalves } from './half';
 import type { Layout } from './layout';
 

@@ -4,8 +4,7 @@ import {
 } from 'three';
 import { Problem } from '../solution/problem';
 import type { Solution } from '../solution/solution';
-import type { Quantity, Settings } from '../stage/settings';
-import type { StageStats } from '../stage/stage';
+import type { Quantity, Settings } from './settings';
 import type { Precision } from './lobe_textures';
 import { percentiles, valuesOf } from './quantities';
 import { Resident } from './resident';
@@ -14,6 +13,17 @@ import { meterUploads } from './upload_meter';
 const kSamples = 4;
 /** Coarse pictures have so many pixels for one, along each side, and one sample in each. */
 const kCoarse = 0.5;
+
+export interface DrawStats {
+  frames: number;
+  /** Of the last frame, milliseconds, waiting for the GPU only where the browser does. */
+  frameMs: number;
+  /** Bytes sent to the GPU as textures and buffers since the page was opened. */
+  uploadedBytes: number;
+  /** Of the last frame: mirrors' and probes' included. */
+  drawCalls: number;
+  triangles: number;
+}
 
 /** A picture as bytes: RGBA, top row first. */
 export interface Captured {
@@ -29,7 +39,7 @@ export interface Captured {
  * frame.
  */
 export class Picture {
-  readonly stats: StageStats = { frames: 0, frameMs: 0, uploadedBytes: 0, drawCalls: 0, triangles: 0 };
+  readonly stats: DrawStats = { frames: 0, frameMs: 0, uploadedBytes: 0, drawCalls: 0, triangles: 0 };
   private readonly gl: WebGL2RenderingContext;
   private readonly renderer: WebGLRenderer;
   private readonly fine: WebGLRenderTarget;

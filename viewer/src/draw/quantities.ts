@@ -1,7 +1,7 @@
 /** What nodes can be coloured by (Settings.falseColour): one number a node of the whole solution. */
 import { coefficientCount, zernikeRadial } from '../sh/zernike';
 import type { Lobes, Patch, Rgb, Solution } from '../solution/solution';
-import type { Quantity } from '../stage/settings';
+import type { Quantity } from './settings';
 import { categories } from './colour_map';
 
 const kLuminance: Rgb = [0.2126, 0.7152, 0.0722];  // Rec. 709

@@ -1,6 +1,6 @@
 import { Mesh, Scene, Vector3, type Vector2, type Box3, type PerspectiveCamera, type WebGLRenderer, type WebGLRenderTarget } from 'three';
 import type { Solution } from '../solution/solution';
-import type { Settings } from '../stage/settings';
+import type { Settings } from './settings';
 import { bySlot, layOut, type Layout } from './layout';
 import { LobeTextures, type Precision } from './lobe_textures';
 import { NodeLight } from './node_light';

@@ -1,5 +1,5 @@
 import { GLSL3, NoBlending, RawShaderMaterial, Vector2, type Texture, type WebGLRenderer } from 'three';
-import { toneCurves, type Settings } from '../stage/settings';
+import { toneCurves, type Settings } from './settings';
 import { colourTexture, falseColourGlsl } from './colour_map';
 import { FullScreen, fullScreenVertex } from './full_screen';
 

@@ -3,7 +3,7 @@ import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh,
   ShaderMaterial, Vector3,
 } from 'three';
-import type { ToneCurve } from '../stage/settings';
+import type { ToneCurve } from '../draw/settings';
 import { kGhostColour, kNegativeColour } from './colours';
 import type { Inspection } from './inspection';
 import { surfaceOf } from './surface';

@@ -1,5 +1,5 @@
 /** Radiance as the picture shows it, for what is drawn beside it: render/tone.cpp on the CPU, one channel. */
-import type { ToneCurve } from '../stage/settings';
+import type { ToneCurve } from '../draw/settings';
 
 /** Where reinhard (SIGGRAPH 2002, eq. 4) and filmic (Hable, GDC 2010) reach 1. */
 const kReinhardWhite = 4;

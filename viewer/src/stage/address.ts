@@ -3,7 +3,7 @@
  * a link that was cut or mistyped shows what it can.
  */
 import { Vector3 } from 'three';
-import { kMostDegree, toneCurves, type FalseColour, type Quantity, type Settings } from './settings';
+import { kMostDegree, toneCurves, type FalseColour, type Quantity, type Settings } from '../draw/settings';
 import type { Pose } from './stage';
 
 export const quantities: readonly Quantity[] = [

@@ -4,11 +4,11 @@
  */
 import { Group, PerspectiveCamera, Ray, Vector2, Vector3, Raycaster } from 'three';
 import type { Solution } from '../solution/solution';
-import { Picture, type Captured } from '../draw/picture';
+import { Picture, type Captured, type DrawStats } from '../draw/picture';
 import { whyNot } from '../draw/quantities';
 import { Pace } from './pace';
 import { pickAlong, type Pick } from './pick';
-import { defaultSettings, type Quantity, type Settings } from './settings';
+import { defaultSettings, type Quantity, type Settings } from '../draw/settings';
 
 /** Where the eye is, what it turns about. */
 export interface Pose {
@@ -17,17 +17,6 @@ export interface Pose {
   up: Vector3;
   /** Vertical, degrees. */
   fov: number;
-}
-
-export interface StageStats {
-  frames: number;
-  /** Of the last frame, milliseconds, waiting for the GPU only where the browser does. */
-  frameMs: number;
-  /** Bytes sent to the GPU as textures and buffers since the page was opened. */
-  uploadedBytes: number;
-  /** Of the last frame: mirrors' and probes' included. */
-  drawCalls: number;
-  triangles: number;
 }
 
 export class Stage {
@@ -124,7 +113,7 @@ export class Stage {
     return pickAlong(this.solution, new Ray(caster.ray.origin, caster.ray.direction));
   }
 
-  get stats(): StageStats {
+  get stats(): Readonly<DrawStats> {
     return this.picture.stats;
   }
 

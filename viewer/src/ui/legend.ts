@@ -1,5 +1,5 @@
 /** What colours mean: a scale with ticks, whose ends can be set, or a list of kinds. */
-import type { FalseColour, Quantity } from '../stage/settings';
+import type { FalseColour, Quantity } from '../draw/settings';
 import type { Stage } from '../stage/stage';
 import { h } from './dom';
 import { categories, colourAt, type Colour } from '../draw/colour_map';

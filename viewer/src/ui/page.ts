@@ -7,7 +7,7 @@ import { formatAddress, parseAddress } from '../stage/address';
 import { Controls } from '../stage/controls';
 import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
-import { defaultSettings, kMostDegree, type Quantity } from '../stage/settings';
+import { defaultSettings, kMostDegree, type Quantity } from '../draw/settings';
 import { Stage, type Pose } from '../stage/stage';
 import { boundsOf, poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';

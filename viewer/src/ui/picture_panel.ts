@@ -1,7 +1,7 @@
 /** How the scene is shown: exposure, curve, false colour, edges, backs. */
 import type { Solution } from '../solution/solution';
 import { quantities } from '../stage/address';
-import { toneCurves, type Quantity, type ToneCurve } from '../stage/settings';
+import { toneCurves, type Quantity, type ToneCurve } from '../draw/settings';
 import type { Stage } from '../stage/stage';
 import { h } from './dom';
 import { signed } from './format';

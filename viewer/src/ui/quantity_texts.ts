@@ -1,4 +1,4 @@
-import type { Quantity } from '../stage/settings';
+import type { Quantity } from '../draw/settings';
 
 export interface QuantityText {
   /** In the menu. */
