@@ -31,6 +31,9 @@ fs::path Target(const std::string& path) {
   fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
   if (error) FailToWrite(path, error.value());
   if (!target.has_filename()) target = target.parent_path();
+  if (fs::is_symlink(fs::symlink_status(target, error))) {
+    throw InputError(path + ": is a symbolic link to nothing");
+  }
   return target;
 }
 
@@ -46,17 +49,36 @@ std::set<std::string> EarlierExport(const fs::path& folder) {
   return names;
 }
 
+/// What takes a folder's place must be able to get its name.
+void RequireRenameable(const std::string& path, const fs::path& target) {
+  std::error_code error;
+  if (fs::equivalent(target, fs::current_path(error), error)) {
+    throw InputError(path + ": is the folder you are in, which cannot be replaced; name another");
+  }
+  struct stat folder, parent;
+  if (stat(target.c_str(), &folder) == 0 && stat(target.parent_path().c_str(), &parent) == 0 &&
+      folder.st_dev != parent.st_dev) {
+    throw InputError(path +
+                     ": is where a file system is mounted, which cannot be replaced; name a folder in it");
+  }
+}
+
 void RequireReplaceable(const std::string& path, const fs::path& target) {
   std::error_code error;
   const fs::file_status status = fs::status(target, error);
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status)) throw InputError(path + ": is a file, expected the name of a folder");
-  const std::set<std::string> ours = EarlierExport(target);
+  RequireRenameable(path, target);
+  std::set<std::string> ours = EarlierExport(target);
+  for (const std::string& file : std::set<std::string>(ours)) {
+    for (fs::path in = fs::path(file).parent_path(); !in.empty(); in = in.parent_path())
+      ours.insert(in.generic_string());
+  }
   // Not by its view.json alone: whatever else lies there would be lost.
   for (auto it = fs::recursive_directory_iterator(target, error); !error && it != fs::end(it);
        it.increment(error)) {
     const std::string name = it->path().lexically_relative(target).generic_string();
-    if ((it->is_directory() && !it->is_symlink()) || ours.count(name) > 0) continue;
+    if (ours.count(name) > 0) continue;
     throw InputError(path + ": holds '" + name +
                      "', which is not of an earlier export; choose another folder, or empty this one");
   }
@@ -95,6 +117,9 @@ class TemporaryFolder {
   }
 
   void PutInPlace() {
+    // What was private stays private.
+    struct stat before;
+    if (stat(target_.c_str(), &before) == 0) chmod(name_.c_str(), before.st_mode & 07777);
     for (const auto& entry : fs::recursive_directory_iterator(name_)) {
       if (entry.is_directory()) Flush(entry.path());
     }

@@ -61,6 +61,9 @@ class ThreadPerConnection : public httplib::TaskQueue {
 /// Is this Host header one of this machine's own names, whatever the port?
 bool NamesLoopback(const std::string& host) {
   const size_t end = host.starts_with('[') ? host.find(']') + 1 : std::min(host.find(':'), host.size());
+  const std::string rest = host.substr(end);
+  const bool port = rest.starts_with(':') && rest.find_first_not_of("0123456789", 1) == std::string::npos;
+  if (!rest.empty() && !port) return false;
   std::string name = host.substr(0, end);
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   return name == kAddress || name == "localhost" || name == "[::1]";

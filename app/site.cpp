@@ -29,6 +29,12 @@ bool HoldsPage(const fs::path& folder) {
 fs::path FindViewer(const std::optional<std::string>& given) {
   if (given) {
     if (!HoldsPage(*given)) throw InputError(*given + ": holds no " + kPage + kHowToGet);
+    // viewer/ of the source has an index.html too, of a page still to be built.
+    std::error_code error;
+    if (fs::exists(fs::path(*given) / "package.json", error)) {
+      throw InputError(*given +
+                       ": holds the page's source, expected the page that `npm run build` makes of it");
+    }
     return *given;
   }
   const fs::path program = ProgramFolder();

@@ -64,7 +64,7 @@ void AddViewCommand(CLI::App& app, Command* command) {
       "clicked\n"
       "at. Prints the page's address, opens it if there is a desktop, and goes on until Ctrl-C (exit code "
       "0).\n"
-      "Only this machine can reach it. The solution is read once, at the start.\n"
+      "Only this machine can reach it, whoever is logged in there. The solution is read once, at the start.\n"
       "\n"
       "From another machine: `ssh -L 8017:localhost:8017 HOST`, then http://localhost:8017/ there; or `lobe "
       "export`,\n"

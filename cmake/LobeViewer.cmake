@@ -33,7 +33,7 @@ if(LOBE_VIEWER STREQUAL "AUTO")
 endif()
 add_custom_command(
   OUTPUT ${viewer_stamp}
-  COMMAND bash ${viewer_source}/build.sh ${optional} ${LOBE_VIEWER_BUNDLE}
+  COMMAND ${CMAKE_COMMAND} -E env NPM=${LOBE_NPM} bash ${viewer_source}/build.sh ${optional} ${LOBE_VIEWER_BUNDLE}
   COMMAND ${CMAKE_COMMAND} -E touch ${viewer_stamp}
   DEPENDS ${viewer_files} ${viewer_sources} ${viewer_source}/build.sh
   COMMENT "Building the viewer's page"

@@ -32,7 +32,7 @@ for want in "$@"; do
       ;;
     browser)
       want_node
-      command -v chromium >/dev/null || missing+=(chromium)
+      command -v chromium >/dev/null || missing+=(chromium chromium-sandbox)
       installed fonts-dejavu-core || missing+=(fonts-dejavu-core)
       ;;
     bench)

@@ -49,7 +49,7 @@ class GlbWriter {
 void WriteFileAtomically(const std::string& path, std::span<const uint8_t> bytes);
 
 /// Throws InputError if `path` could not be written: its folder missing or read-only, or a directory by
-/// that name. Asked before long work, so that nothing is computed in vain. `what` names the flag.
+/// that name. Asked before long work, so that nothing is computed in vain.
 void CheckWritable(const std::string& path);
 
 }  // namespace lobe

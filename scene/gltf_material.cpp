@@ -121,7 +121,9 @@ std::vector<Material> ReadMaterials(const GltfFile& file, std::vector<std::strin
     const Rgb factor = json.Color("emissiveFactor", Rgb::Zero());
     const GltfJson strength = json.Extension("KHR_materials_emissive_strength");
     material.emission = factor * static_cast<float>(strength.Number("emissiveStrength", 1, 0));
-    if (!material.emission.allFinite()) json.Fail("emissiveFactor times emissiveStrength is not finite");
+    // Channels are summed in many places.
+    if (!std::isfinite(material.emission.sum()))
+      json.Fail("emissiveFactor times emissiveStrength is not finite");
     if (json.Object("extensions").Has(kBrdfExtension)) {
       material.reflectance = brdfs.Read(json.Extension(kBrdfExtension));
     } else {

@@ -412,7 +412,8 @@ bool Receiver::SettlePromising(size_t first) {
       (seen_[root] == kSeen ? seen : hidden) += expected;
     }
     const double enough = kTooFewRays * (promising + others);
-    if (!(others > 0) || seen >= enough) return false;
+    // An infinite sum says nothing, and would never end.
+    if (!(others > 0) || seen >= enough || !std::isfinite(enough)) return false;
     // Roots that no ray was for are taken to be like those that were asked.
     if (hidden > 0 && others + promising * seen / (seen + hidden) < enough) break;
   }

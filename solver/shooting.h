@@ -77,7 +77,8 @@ class Receiver {
   Received Gather(uint32_t node, const ShootingField& field, int samples, float received_before,
                   uint64_t seed, float* out);
 
-  /// The shadow rays of the last Gather, for measuring what tracing them alone costs (bench/).
+  /// The shadow rays that the last Gather ended with (what it forgot counts as work, too), for measuring what
+  /// tracing them alone costs (bench/).
   std::span<const Ray> last_rays() const { return rays_; }
 
  private:

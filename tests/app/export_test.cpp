@@ -143,6 +143,33 @@ TEST_F(ExportTest, AFolderOfOtherThingsIsLeftAlone) {
   EXPECT_EQ(folder_.Entries(), std::vector<std::string>{"out"});
 }
 
+TEST_F(ExportTest, FoldersInAnEarlierExportAreLeftAloneToo) {
+  ASSERT_EQ(Export().exit_code, 0);
+  fs::create_directories(Out() + "/drafts/empty");
+  ExpectOneSentence(Export(), 1, {Out(), "drafts", "earlier export"});
+  EXPECT_TRUE(fs::exists(Out() + "/drafts/empty"));
+}
+
+TEST_F(ExportTest, WhatWasPrivateStaysPrivate) {
+  fs::create_directory(Out());
+  fs::permissions(Out(), fs::perms::owner_all);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(Export().exit_code, 0);
+    EXPECT_EQ(fs::status(Out()).permissions(), fs::perms::owner_all) << i;
+  }
+}
+
+TEST_F(ExportTest, FoldersThatCannotBeReplacedAreToldBeforeTheSolutionIsRead) {
+  const auto refused = [&](const std::string& place, const std::string& why) {
+    ExpectOneSentence(RunLobe({"export", "no-solution.glb", "-o", place, "--viewer", shared_->File("page")}),
+                      1, {place, why});
+  };
+  refused(".", "the folder you are in");
+  fs::create_symlink("nowhere", folder_.File("link"));
+  refused(folder_.File("link"), "symbolic link");
+  refused("/proc", "mounted");
+}
+
 TEST_F(ExportTest, PlacesThatCannotBeWrittenAreToldBeforeTheSolutionIsRead) {
   WriteWholeFile(folder_.File("file"), "not a folder");
   const std::string page = shared_->File("page");

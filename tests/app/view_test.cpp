@@ -132,8 +132,9 @@ TEST_F(ViewTest, NamesThatLeadElsewhereAreNotFound) {
 // Against DNS rebinding: a page from elsewhere whose name was given this address.
 TEST_F(ViewTest, OnlyThisMachinesOwnNamesAreAnswered) {
   const int port = Serve();
-  for (const char* host : {"evil.example", "evil.example:80", "127.0.0.1.evil.example",
-                           "localhost.evil.example", "127.0.0.2", "[::2]", "[", "", ":80"}) {
+  for (const char* host :
+       {"evil.example", "evil.example:80", "127.0.0.1.evil.example", "localhost.evil.example", "127.0.0.2",
+        "[::2]", "[::1]evil", "localhost:1:2", "[", "", ":80"}) {
     const HttpAnswer answer = Ask(port, "/solution.glb", host);
     EXPECT_EQ(answer.status, 403) << host;
     EXPECT_LT(answer.body.size(), 100u);
@@ -199,8 +200,9 @@ TEST_F(ViewTest, TwoServersDoNotShareAPort) {
 
 TEST_F(ViewTest, AnotherPortIsFoundIfTheUsualOneIsTaken) {
   const TakenPort taken(8017);
-  RunningLobe view(Arguments(Solution(), {"--json"}));
-  EXPECT_EQ(view.first_line(), "{");
+  RunningLobe view(Arguments(Solution(), {}));
+  EXPECT_TRUE(view.first_line().starts_with("http://127.0.0.1:")) << view.first_line();
+  EXPECT_NE(view.first_line(), "http://127.0.0.1:8017/");
   EXPECT_EQ(view.Stop(SIGINT).exit_code, 0);
 }
 
@@ -222,6 +224,13 @@ TEST_F(ViewTest, AMissingPageSaysHowToGetIt) {
   const ScratchFolder folder;
   ExpectOneSentence(RunLobe({"view", Solution(), "--viewer", folder.path()}), 1,
                     {folder.path(), "Node.js 18", "npm", "--viewer"});
+}
+
+TEST_F(ViewTest, TheSourceOfThePageIsNotThePage) {
+  const ScratchFolder folder;
+  WriteWholeFile(folder.File("index.html"), "<!doctype html>");
+  WriteWholeFile(folder.File("package.json"), "{}");
+  ExpectOneSentence(RunLobe({"view", Solution(), "--viewer", folder.path()}), 1, {folder.path(), "source"});
 }
 
 TEST_F(ViewTest, SolutionsOfTwoFilesAreServedToo) {

@@ -636,6 +636,10 @@ TEST(GltfMaterialTest, ValuesOutOfRangeNameMaterialPropertyValueAndRange) {
   refused({{"emissiveFactor", {1e30, 0, 0}},
            {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e30}}}}}},
           {"emissiveFactor times emissiveStrength is not finite"});
+  // Each channel is, their sum is not.
+  refused({{"emissiveFactor", {1, 1, 1}},
+           {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 2e38}}}}}},
+          {"emissiveFactor times emissiveStrength is not finite"});
   refused(extension("KHR_materials_emissive_strength", "emissiveStrength", -2),
           {"KHR_materials_emissive_strength.emissiveStrength is -2"});
   refused(extension("KHR_materials_ior", "ior", 0.5),
