@@ -10,7 +10,7 @@ import { Tone, type Content } from './tone';
 
 /** All of a solution that the GPU holds, and the passes over it. */
 export class Resident {
-  readonly tone: Tone;
+  private readonly tone: Tone;
   private readonly scene = new Scene();
   /** Depths alone, and what is drawn over the picture. */
   private readonly over = new Scene();
@@ -68,16 +68,17 @@ export class Resident {
     }
   }
 
-  /** The scene, in linear light. */
-  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, target: WebGLRenderTarget): void {
+  /** The scene, in linear light. Says whether probes show it as it is now; while it `stands`, they do. */
+  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, target: WebGLRenderTarget, stands: boolean): boolean {
     this.apply(settings);
     const { renderer } = this;
     const evaluate = (eye: Vector3) => this.nodeLight.evaluate(renderer, eye);
-    this.speculars?.prepare(renderer, this.scene, camera, target.width, target.height, target.samples, evaluate);
+    const whole = this.speculars?.prepare(renderer, this.scene, camera, target, stands, evaluate) ?? true;
     evaluate(new Vector3().setFromMatrixPosition(camera.matrixWorld));
     renderer.setRenderTarget(target);
     renderer.clear();
     renderer.render(this.scene, camera);
+    return whole;
   }
 
   /** From `target` to the render target that is set, of `size` pixels. */

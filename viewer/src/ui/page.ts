@@ -133,6 +133,7 @@ export class Page {
     this.flight.stop();
     this.selection.dispose();
     clearTimeout(this.writing);
+    this.stage.dispose();
     const { canvas } = this.stage;
     canvas.getContext('webgl2')?.getExtension('WEBGL_lose_context')?.loseContext();
     canvas.replaceWith(canvas.cloneNode());
