@@ -2,7 +2,7 @@
  * The scene on the canvas: camera, settings, what is drawn when. The panels know it by this class alone; how lobes get
  * to the screen is draw/'s.
  */
-import { Group, PerspectiveCamera, Ray, Vector2, Vector3, Raycaster, type Mesh, type Object3D } from 'three';
+import { Group, PerspectiveCamera, Vector2, Vector3, Raycaster, type Mesh, type Object3D } from 'three';
 import type { Solution } from '../solution/solution';
 import { Picture, type Captured, type DrawStats } from '../draw/picture';
 import { whyNot } from '../draw/quantities';
@@ -128,7 +128,7 @@ export class Stage {
     const rect = this.canvas.getBoundingClientRect();
     const caster = new Raycaster();
     caster.setFromCamera(new Vector2((2 * x) / rect.width - 1, 1 - (2 * y) / rect.height), this.camera);
-    return pickAlong(this.solution, new Ray(caster.ray.origin, caster.ray.direction));
+    return pickAlong(this.solution, caster.ray, this.current.seeThroughBacks);
   }
 
   get stats(): Readonly<DrawStats> {

@@ -18,7 +18,7 @@ export function boundsOf(solution: Solution): Box3 {
 export function poseOfCamera(solution: Solution, camera: NamedCamera): Pose {
   const column = (i: number) => new Vector3().setFromMatrixColumn(camera.matrix, i);
   const eye = column(3), ahead = column(2).normalize().negate();
-  const met = pickAlong(solution, new Ray(eye, ahead));
+  const met = pickAlong(solution, new Ray(eye, ahead), true);
   const distance = met?.distance ?? boundsOf(solution).getCenter(new Vector3()).distanceTo(eye);
   // A camera without roll may as well have the world's up, so that orbits stay level.
   const level = Math.abs(column(0).normalize().y) < 1e-4 && column(1).y > 0 && Math.abs(ahead.y) < 0.999;
