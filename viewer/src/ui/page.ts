@@ -104,7 +104,7 @@ export class Page {
       if (location.hash !== this.written) this.obeyAll(location.hash);
     }, { signal });
 
-    this.stage.set({ exposure: automaticExposure(solution), degree: kMostDegree });
+    this.stage.set({ exposure: automaticExposure(solution), degree: kMostDegree, seeThroughBacks: this.startsOutside });
     this.stage.setPose(this.cameraPoses[0] ?? poseOfAll(solution));
     this.obey(location.hash);
     this.follow();
@@ -140,6 +140,11 @@ export class Page {
     history.replaceState(null, '', location.pathname + location.search);
   }
 
+  /** Without cameras the eye starts where it sees all, and rooms show their black backs there. */
+  private get startsOutside(): boolean {
+    return this.cameraPoses.length === 0;
+  }
+
   private follow(): void {
     // Settings are a new object whenever they change; most of the time only the eye moves.
     if (this.stage.settings !== this.followed) {
@@ -172,7 +177,7 @@ export class Page {
   /** Of an address that somebody typed or pasted: what it leaves out is as always. */
   private obeyAll(hash: string): void {
     const { exposure } = this.stage.settings;
-    this.stage.set({ ...defaultSettings, exposure });
+    this.stage.set({ ...defaultSettings, exposure, seeThroughBacks: this.startsOutside });
     this.setPinned(false);
     this.selection.take(1, null);
     this.selection.take(0, null);
