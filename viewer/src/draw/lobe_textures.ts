@@ -11,8 +11,7 @@ import {
   UnsignedIntType, type IUniform, type Texture,
 } from 'three';
 import { zernikeScale, zernikeStep } from '../sh/zernike';
-import type { Solution } from '../solution/solution';
-import { kMostDegree } from './settings';
+import { kMostDegree, type Solution } from '../solution/solution';
 import { halfScale, toHalves } from './half';
 import type { Layout } from './layout';
 
@@ -26,7 +25,7 @@ export type Precision = 'half' | 'float';
 export class LobeTextures {
   readonly uniforms: Record<'coefficients' | 'coefficientUnit' | 'table' | 'steps' | 'degree', IUniform>;
 
-  constructor(solution: Solution, layout: Layout, readonly precision: Precision) {
+  constructor(solution: Solution, layout: Layout, precision: Precision) {
     const { texture, unit } = coefficientTexture(solution, layout, precision);
     this.uniforms = {
       coefficients: { value: texture },

@@ -1,7 +1,8 @@
 import {
-  Box3, Color, HalfFloatType, LinearFilter, NearestFilter, RGBAFormat, Sphere, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  Color, HalfFloatType, LinearFilter, NearestFilter, RGBAFormat, Sphere, Vector2, WebGLRenderer, WebGLRenderTarget,
   type Group, type PerspectiveCamera,
 } from 'three';
+import { boundsOf } from '../solution/bounds';
 import { Problem } from '../solution/problem';
 import type { Solution } from '../solution/solution';
 import type { Quantity, Settings } from './settings';
@@ -44,7 +45,6 @@ export class Picture {
   private readonly renderer: WebGLRenderer;
   /** All that the GPU holds. */
   private held: { resident: Resident; fine: WebGLRenderTarget; coarse: WebGLRenderTarget };
-  private readonly box = new Box3();
   private readonly sphere = new Sphere();
   private readonly values = new Map<Quantity, Float32Array>();
   private lost = false;
@@ -70,16 +70,12 @@ export class Picture {
     this.renderer.info.autoReset = false;
     const light = { format: RGBAFormat, type: HalfFloatType, minFilter: NearestFilter } as const;
     const samples = Math.min(kSamples, gl.getParameter(gl.MAX_SAMPLES) as number);
-    const part = new Box3();
-    for (const { positions } of solution.patches) this.box.union(part.setFromArray(positions));
-    if (solution.faces) this.box.union(part.setFromArray(solution.faces.positions));
-    if (this.box.isEmpty()) this.box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-    this.box.getBoundingSphere(this.sphere);
-
+    const box = boundsOf(solution);
+    box.getBoundingSphere(this.sphere);
     const build = () => {
       this.renderer.setClearColor(new Color(0), 0);
       return {
-        resident: new Resident(this.renderer, solution, this.box, floats, precision, (q) => this.numbers(q)),
+        resident: new Resident(this.renderer, solution, box, floats, precision, (q) => this.numbers(q)),
         fine: new WebGLRenderTarget(1, 1, { ...light, magFilter: NearestFilter, samples }),
         coarse: new WebGLRenderTarget(1, 1, { ...light, magFilter: LinearFilter }),
       };

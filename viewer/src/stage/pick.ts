@@ -1,5 +1,6 @@
 import { Box3, Ray, Vector3 } from 'three';
 import type { Patch, Solution } from '../solution/solution';
+import type { Triangles } from '../solution/triangles';
 
 /** A place on an element. */
 export interface Pick {
@@ -45,11 +46,6 @@ export function pickAlong(solution: Solution, ray: Ray, seeThroughBacks = false)
   }
   const { patch, element } = found as { patch: Patch; element: number };
   return walled ? null : weigh(patch, element, ray.at(nearest, new Vector3()), nearest);
-}
-
-interface Triangles {
-  positions: Float32Array;
-  indices: Uint32Array;
 }
 
 /** Triangles in a row lie together, so that few boxes of so many are met. */

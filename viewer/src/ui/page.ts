@@ -2,6 +2,7 @@
 import { Vector3 } from 'three';
 import { inspectNode, toJson, type LobeJson } from '../inspect/inspection';
 import { Selection, type Seat } from '../inspect/selection';
+import { boundsOf } from '../solution/bounds';
 import type { Solution } from '../solution/solution';
 import { formatAddress, parseAddress } from '../stage/address';
 import { Controls } from '../stage/controls';
@@ -9,7 +10,7 @@ import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
 import { defaultSettings, kMostDegree, type Quantity } from '../draw/settings';
 import { Stage, type Pose } from '../stage/stage';
-import { boundsOf, poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
+import { poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';
 import { download, region } from './dom';
 import { screenshot } from './screenshot';
