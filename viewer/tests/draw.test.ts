@@ -3,12 +3,14 @@ import { describe, expect, it } from 'vitest';
 import { categories, colourAt } from '../src/draw/colour_map';
 import { halfScale, toHalves } from '../src/draw/half';
 import { bySlot, edgesOf, elementsOf, layOut } from '../src/draw/layout';
+import { checkRoom } from '../src/draw/lobe_textures';
 import { exitance, percentiles, valuesOf, whyNot } from '../src/draw/quantities';
 import { MirroredCamera, reflectionIn } from '../src/draw/reflection';
 import { glassOf, mirrorsOf } from '../src/draw/specular_parts';
 import { inspectNode } from '../src/inspect/inspection';
 import { coefficientCount } from '../src/sh/zernike';
 import { luminance } from '../src/solution/luminance';
+import { Problem } from '../src/solution/problem';
 import type { Material, Patch, Solution } from '../src/solution/solution';
 
 const material = (change: Partial<Material> = {}): Material => ({
@@ -81,6 +83,13 @@ describe('Layout', () => {
   it('carries numbers of nodes along', () => {
     const moved = bySlot(layout, Float32Array.from({ length: 16 }, (_, i) => i));
     for (const { patch, firstSlot } of layout.patches) expect(moved[firstSlot + 2]).toBe(patch.firstNode + 2);
+  });
+
+  it('has to have room in textures', () => {
+    const glossy = (count: number) => ({ ...layout, nodeCount: count + 8, coefficientCount: 8 + 3 * count });
+    expect(() => checkRoom(glossy(4e6), { side: 4096, layers: 256 })).not.toThrow();
+    expect(() => checkRoom(glossy(4e6), { side: 2048, layers: 256 })).toThrow(/4000000 glossy nodes/);
+    expect(() => checkRoom({ ...layout, coefficientCount: 2 ** 31 }, { side: 4096, layers: 256 })).toThrow(Problem);
   });
 
   it('has every edge once', () => {

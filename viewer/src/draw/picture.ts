@@ -70,12 +70,15 @@ export class Picture {
     this.renderer.info.autoReset = false;
     const light = { format: RGBAFormat, type: HalfFloatType, minFilter: NearestFilter } as const;
     const samples = Math.min(kSamples, gl.getParameter(gl.MAX_SAMPLES) as number);
+    const limits = {
+      side: gl.getParameter(gl.MAX_TEXTURE_SIZE) as number, layers: gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number,
+    };
     const box = boundsOf(solution);
     box.getBoundingSphere(this.sphere);
     const build = () => {
       this.renderer.setClearColor(new Color(0), 0);
       return {
-        resident: new Resident(this.renderer, solution, box, floats, precision, (q) => this.numbers(q)),
+        resident: new Resident(this.renderer, solution, box, floats, precision, limits, (q) => this.numbers(q)),
         fine: new WebGLRenderTarget(1, 1, { ...light, magFilter: NearestFilter, samples }),
         coarse: new WebGLRenderTarget(1, 1, { ...light, magFilter: LinearFilter }),
       };

@@ -2,7 +2,7 @@ import { Mesh, Scene, Vector3, type Vector2, type Box3, type PerspectiveCamera, 
 import type { Solution } from '../solution/solution';
 import type { Settings } from './settings';
 import { bySlot, layOut, type Layout } from './layout';
-import { LobeTextures, type Precision } from './lobe_textures';
+import { checkRoom, LobeTextures, type Precision, type TextureLimits } from './lobe_textures';
 import { NodeLight } from './node_light';
 import { Speculars } from './speculars';
 import { asMesh, Surfaces } from './surfaces';
@@ -24,10 +24,12 @@ export class Resident {
 
   constructor(
     private readonly renderer: WebGLRenderer, solution: Solution, box: Box3, floats: boolean, precision: Precision,
+    limits: TextureLimits,
     /** One number a node of the whole solution. */
     private readonly valuesOf: (quantity: NonNullable<Settings['falseColour']>['quantity']) => Float32Array,
   ) {
     this.layout = layOut(solution);
+    checkRoom(this.layout, limits);
     this.lobes = new LobeTextures(solution, this.layout, precision);
     this.nodeLight = new NodeLight(this.layout, this.lobes, floats);
     const { coefficients, coefficientUnit } = this.lobes.uniforms;
