@@ -112,3 +112,18 @@ test('A solution without cameras is not opened on a black box', async () => {
     await site.close();
   }
 });
+
+test('What curved glass reflects follows the slider of degrees once that rests', () => withView('glass_room', async (page) => {
+  const still = await page.evaluate(() => {
+    window.lobe.stage.drawNow();
+    return window.lobe.stage.stats.drawCalls;
+  });
+  // The frame after: the stage asked for its own first.
+  const moving = await page.evaluate(() => {
+    const { stage } = window.lobe;
+    stage.set({ degree: 0 });
+    return new Promise((done) => requestAnimationFrame(() => done(stage.stats.drawCalls)));
+  });
+  assert.equal(moving, still);
+  await page.waitForFunction((most) => window.lobe.stage.stats.drawCalls > most, still, { timeout: 10000 });
+}));

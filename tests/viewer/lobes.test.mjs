@@ -61,8 +61,8 @@ test('The picture shows lobes as their sums say, in frames of all normals', asyn
       let apart = 0;
       for (const [i, normal] of normals.entries()) {
         const { x, y, z } = frameOf(normal);
-        for (let step = 0; step < 4; ++step) {
-          const theta = 0.3 + 0.3 * step, phi = 1 + 2.1 * step;
+        for (let step = 0; step < 2; ++step) {
+          const theta = 0.4 + 0.6 * step, phi = 1 + 2.1 * step;
           const local = [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
           const w = [0, 1, 2].map((c) => local[0] * x[c] + local[1] * y[c] + local[2] * z[c]);
           // So far away that the direction is one for all of the square.
