@@ -8,7 +8,7 @@ import { formatAddress, parseAddress } from '../stage/address';
 import { Controls } from '../stage/controls';
 import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
-import { defaultSettings, kMostDegree, type Quantity } from '../draw/settings';
+import { defaultSettings, type Quantity, type Settings } from '../draw/settings';
 import { Stage, type Pose } from '../stage/stage';
 import { poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';
@@ -105,7 +105,7 @@ export class Page {
       if (location.hash !== this.written) this.obeyAll(location.hash);
     }, { signal });
 
-    this.stage.set({ exposure: automaticExposure(solution), degree: kMostDegree, seeThroughBacks: this.startsOutside });
+    this.stage.set(this.asAlways());
     this.stage.setPose(this.cameraPoses[0] ?? poseOfAll(solution));
     this.obey(location.hash);
     this.follow();
@@ -141,11 +141,6 @@ export class Page {
     history.replaceState(null, '', location.pathname + location.search);
   }
 
-  /** Without cameras the eye starts where it sees all, and rooms show their black backs there. */
-  private get startsOutside(): boolean {
-    return this.cameraPoses.length === 0;
-  }
-
   private follow(): void {
     // Settings are a new object whenever they change; most of the time only the eye moves.
     if (this.stage.settings !== this.followed) {
@@ -177,12 +172,17 @@ export class Page {
 
   /** Of an address that somebody typed or pasted: what it leaves out is as always. */
   private obeyAll(hash: string): void {
-    const { exposure } = this.stage.settings;
-    this.stage.set({ ...defaultSettings, exposure, seeThroughBacks: this.startsOutside });
+    this.stage.set(this.asAlways());
     this.setPinned(false);
     this.selection.take(1, null);
     this.selection.take(0, null);
     this.obey(hash);
+  }
+
+  /** Without cameras the eye starts where it sees all, and rooms show their black backs there. */
+  private asAlways(): Settings {
+    const seeThroughBacks = this.cameraPoses.length === 0;
+    return { ...defaultSettings, exposure: automaticExposure(this.solution), seeThroughBacks };
   }
 
   private obey(hash: string): void {
