@@ -3,10 +3,14 @@ import { describe, expect, it } from 'vitest';
 import { categories, colourAt } from '../src/draw/colour_map';
 import { halfScale, toHalves } from '../src/draw/half';
 import { bySlot, edgesOf, elementsOf, layOut } from '../src/draw/layout';
-import { exitance, luminance, percentiles, valuesOf, whyNot } from '../src/draw/quantities';
+import { checkRoom } from '../src/draw/lobe_textures';
+import { exitance, percentiles, valuesOf, whyNot } from '../src/draw/quantities';
 import { MirroredCamera, reflectionIn } from '../src/draw/reflection';
 import { glassOf, mirrorsOf } from '../src/draw/specular_parts';
+import { inspectNode } from '../src/inspect/inspection';
 import { coefficientCount } from '../src/sh/zernike';
+import { luminance } from '../src/solution/luminance';
+import { Problem } from '../src/solution/problem';
 import type { Material, Patch, Solution } from '../src/solution/solution';
 
 const material = (change: Partial<Material> = {}): Material => ({
@@ -21,7 +25,7 @@ function square(y: number, lMax: number, z: number[], change: Partial<Patch> = {
   return {
     index: 0, material: 0, surface: 0, side: 'front', planar: true, firstNode: 0,
     positions: Float32Array.from([0, y, 0, 0, y, 1, 1, y, 1, 1, y, 0]),
-    normals: Float32Array.from([0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0]), baked: new Float32Array(12),
+    normals: Float32Array.from([0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0]),
     indices: Uint32Array.from([0, 1, 2, 0, 2, 3]), hidden: null,
     lobes: { lMax, z: Float32Array.from([...Array(12)].flatMap(() => lobe)) }, ...change,
   };
@@ -81,6 +85,13 @@ describe('Layout', () => {
     for (const { patch, firstSlot } of layout.patches) expect(moved[firstSlot + 2]).toBe(patch.firstNode + 2);
   });
 
+  it('has to have room in textures', () => {
+    const glossy = (count: number) => ({ ...layout, nodeCount: count + 8, coefficientCount: 8 + 3 * count });
+    expect(() => checkRoom(glossy(4e6), { side: 4096, layers: 256 })).not.toThrow();
+    expect(() => checkRoom(glossy(4e6), { side: 2048, layers: 256 })).toThrow(/4000000 glossy nodes/);
+    expect(() => checkRoom({ ...layout, coefficientCount: 2 ** 31 }, { side: 4096, layers: 256 })).toThrow(Problem);
+  });
+
   it('has every edge once', () => {
     expect(edgesOf(elementsOf(layout.patches), layout.nodeCount).length).toBe(2 * 5 * 4);
   });
@@ -134,8 +145,18 @@ describe('Quantities', () => {
     // Its flux is π/2; what is below zero lies beyond the chord x < -1/2: ∫ (x + 1/2) dA = π/6 - 3 √3 / 8 there.
     const solution = solutionOf([square(0, 1, [Math.sqrt(Math.PI) / 2, 0, Math.sqrt(Math.PI) / 2])]);
     const share = (3 * Math.sqrt(3) / 8 - Math.PI / 6) / (Math.PI / 2);
-    // 12 rings of 24 directions see the chord's edge to about a hundredth of the flux.
-    expect(Math.abs(valuesOf(solution, 'negative')[0] - share)).toBeLessThan(0.01);
+    // 26 rings of 52 directions see the chord's edge to about a thousandth of the flux.
+    expect(Math.abs(valuesOf(solution, 'negative')[0] - share)).toBeLessThan(0.001);
+  });
+
+  it('have the negative part that the inspector has, of luminance', () => {
+    const solution = solutionOf([square(0, 4, [3, 1, -2, 0.5, 1.5, -1, 0.7, 2, -0.3])]);
+    const { lobes } = solution.patches[0], K = coefficientCount(4);
+    // Channels that make up for each other.
+    for (let k = 1; k < K; ++k) lobes!.z[K + k] *= -2;
+    const { negative } = inspectNode(solution, 0, 4)!.figures!;
+    expect(negative).toBeGreaterThan(0.01);
+    expect(valuesOf(solution, 'negative')[0]).toBeCloseTo(negative, 6);
   });
 
   it('have a scale that outliers do not stretch', () => {
@@ -199,6 +220,15 @@ describe('Glass', () => {
     expect(parts.length).toBe(2);
     expect(parts.map((p) => p.plane !== null)).toEqual([true, false]);
     expect(parts.map((p) => p.glass!.positions.length)).toEqual([18, 18]);
+  });
+
+  it('is as flat with a triangle that has no area', () => {
+    const solution = solutionOf([], [material({ transmission: [1, 1, 1] })]);
+    const positions = Float32Array.from([0, 0, 0, 1, 0, 0, 1, 0, 1, 0.5, 0, 0]);
+    solution.faces = {
+      positions, normals: new Float32Array(12), indices: Uint32Array.from([0, 3, 1, 0, 1, 2]), material: [0, 0],
+    };
+    expect(glassOf(solution, 6).map((p) => p.plane !== null)).toEqual([true]);
   });
 
   it('has a volume if it is a body', () => {

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { cutLobe, radianceTowards, type Lobe } from '../src/inspect/lobe';
 import { errorOfCut, fluxOf, measureLobe, spectrumOf } from '../src/inspect/figures';
-import { PolarGrid } from '../src/inspect/polar_grid';
+import { PolarGrid } from '../src/sh/polar_grid';
 import { reachOf, sliceOf } from '../src/inspect/slices';
 import { coefficientCount, hemisphereBasis, toHemisphere, toZernike, zernikeBasis } from '../src/sh/zernike';
 
@@ -88,15 +88,15 @@ describe('A lobe', () => {
 });
 
 describe('The polar grid', () => {
-  it('says what the basis says, at every degree up to its own', () => {
-    const grid = new PolarGrid(9, [0, 0.3, 0.8, 1], 7, 0.5);
+  it.each([[0, 8], [0.5, 8], [0, 12], [0.5, 12]] as const)('of offset %f and %i spokes says what the basis says, at every degree up to its own', (offset, spokes) => {
+    const grid = new PolarGrid(9, [0, 0.3, 0.8, 1], spokes, offset);
     for (const degree of [0, 1, 4, 9]) {
       const z = some(degree, 5), values = grid.evaluate(z);
       grid.sines.forEach((rho, ring) => {
-        for (let spoke = 0; spoke < 7; ++spoke) {
+        for (let spoke = 0; spoke < spokes; ++spoke) {
           const a = grid.azimuth(spoke);
           const basis = zernikeBasis(degree, [rho * Math.cos(a), rho * Math.sin(a), Math.sqrt(1 - rho * rho)]);
-          expect(values[ring * 7 + spoke]).toBeCloseTo(basis.reduce((s, b, k) => s + b * z[k], 0), 9);
+          expect(values[ring * spokes + spoke]).toBeCloseTo(basis.reduce((s, b, k) => s + b * z[k], 0), 9);
         }
       });
     }

@@ -7,7 +7,10 @@ afterEach(() => void vi.useRealTimers());
 describe('Pictures', () => {
   it('are fine where frames come in time, and nothing is drawn a second time', () => {
     const drawFinely = vi.fn(), pace = new Pace(drawFinely);
-    for (let i = 0; i < 10; ++i) expect(pace.isCoarse(16)).toBe(false);
+    for (let i = 0; i < 10; ++i) {
+      expect(pace.isCoarse(16)).toBe(false);
+      pace.drawn(true);
+    }
     vi.advanceTimersByTime(10000);
     expect(drawFinely).not.toHaveBeenCalled();
   });
@@ -16,18 +19,27 @@ describe('Pictures', () => {
     const pace = new Pace(() => {});
     expect(pace.isCoarse(150)).toBe(true);
     expect(pace.isCoarse(60)).toBe(true);
+    expect(pace.isCoarse()).toBe(true);
     expect(pace.isCoarse(10)).toBe(false);
     expect(pace.isCoarse(60)).toBe(false);
   });
 
-  it('become fine once they stand, and not while they move', () => {
-    const drawFinely = vi.fn(), pace = new Pace(drawFinely);
+  it('are finished once they stand, and not while they move', () => {
+    const finish = vi.fn(), pace = new Pace(finish);
     for (let i = 0; i < 5; ++i) {
-      pace.isCoarse(150);
+      pace.drawn(false);
       vi.advanceTimersByTime(150);
     }
-    expect(drawFinely).not.toHaveBeenCalled();
+    expect(finish).not.toHaveBeenCalled();
     vi.advanceTimersByTime(100);
-    expect(drawFinely).toHaveBeenCalledTimes(1);
+    expect(finish).toHaveBeenCalledTimes(1);
+  });
+
+  it('are not finished any more once the page is left', () => {
+    const finish = vi.fn(), pace = new Pace(finish);
+    pace.drawn(false);
+    pace.stop();
+    vi.advanceTimersByTime(10000);
+    expect(finish).not.toHaveBeenCalled();
   });
 });

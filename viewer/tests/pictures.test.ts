@@ -1,10 +1,10 @@
 import { describe, expect, it } from 'vitest';
+import { toneMap } from '../src/draw/tone_curves';
 import type { Lobe } from '../src/inspect/lobe';
 import { sliceOf } from '../src/inspect/slices';
 import { paperTheme, roundUp, slicesSvg } from '../src/inspect/slices_svg';
 import { spectrumSvg } from '../src/inspect/spectrum_svg';
 import { surfaceOf } from '../src/inspect/surface';
-import { toneMap } from '../src/inspect/tone';
 import { toZernike } from '../src/sh/zernike';
 
 /** L = a + b x. */

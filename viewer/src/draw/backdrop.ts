@@ -3,6 +3,7 @@ import {
   BackSide, BufferAttribute, BufferGeometry, DoubleSide, FrontSide, GLSL3, NoBlending, RawShaderMaterial, Vector4,
 } from 'three';
 import type { Faces, Material } from '../solution/solution';
+import { emissionGlsl } from './emission';
 import type { PatchUniforms } from './surfaces';
 
 /** Brighter light is cut here: halves end at 65504, and sums of samples have to stay below. */
@@ -12,7 +13,7 @@ export const kBrightest = 60000;
 export function faceGeometry(faces: Faces, materials: readonly Material[]): BufferGeometry {
   const kept: number[] = [];
   for (let f = 0; f < faces.indices.length / 3; ++f) if (!materials[faces.material[f]].transmission) kept.push(f);
-  const positions = new Float32Array(9 * kept.length), rows = new Uint16Array(3 * kept.length);
+  const positions = new Float32Array(9 * kept.length), rows = new Float32Array(3 * kept.length);
   kept.forEach((f, at) => {
     for (let k = 0; k < 3; ++k) {
       const v = 3 * faces.indices[3 * f + k];
@@ -57,7 +58,7 @@ export function backdropMaterial(shared: PatchUniforms): RawShaderMaterial {
     fragmentShader: /* glsl */ `
       precision highp float;
       precision highp int;
-      uniform highp sampler2D emission;
+      ${emissionGlsl}
       uniform float unit;
       uniform bool seeThrough, numbers;
       flat in int emitter;
@@ -66,7 +67,7 @@ export function backdropMaterial(shared: PatchUniforms): RawShaderMaterial {
       #endif
       out vec4 pixel;
       void main() {
-        vec3 emitted = texelFetch(emission, ivec2(emitter + (gl_FrontFacing ? 0 : 1), 0), 0).rgb;
+        vec3 emitted = emissionOf(emitter + (gl_FrontFacing ? 0 : 1));
         bool black = emitted == vec3(0.0);
         if (seeThrough && black && !gl_FrontFacing) discard;
         #ifdef MIRROR_SLACK

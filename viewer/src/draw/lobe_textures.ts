@@ -2,7 +2,7 @@
  * A solution's lobes as textures, and the GLSL that reads them: `lobeOf`.
  *
  * - `coefficients`: half (or float) RGB, one coefficient over Zernike's basis a texel, node after node, k within a
- *   node, running on through the rows and layers of a 2D array: sizes are bounded by memory alone.
+ *   node, running on through the rows and layers of a 2D array.
  * - `table`: two texels of 128 bits a glossy node: position and first coefficient, normal and degree.
  * - `steps`: the recurrence's constants (a, b, c) and the scale of R_n^m, at (j, m), n = m + 2 j.
  */
@@ -11,8 +11,8 @@ import {
   UnsignedIntType, type IUniform, type Texture,
 } from 'three';
 import { zernikeScale, zernikeStep } from '../sh/zernike';
-import type { Solution } from '../solution/solution';
-import { kMostDegree } from './settings';
+import { Problem } from '../solution/problem';
+import { kMostDegree, type Solution } from '../solution/solution';
 import { halfScale, toHalves } from './half';
 import type { Layout } from './layout';
 
@@ -21,12 +21,31 @@ const kSide = 2048;
 /** Glossy nodes in a row of `table`, and of what is evaluated of them. */
 export const kNodesInRow = kSide / 2;
 
+/** What a GPU's textures hold at most: pixels along a side, layers. */
+export interface TextureLimits {
+  side: number;
+  layers: number;
+}
+
+/** Throws Problem if a GPU cannot hold a solution's lobes: with the least that WebGL 2 has, from two million glossy nodes
+ *  on, or a thousand million coefficients; most cards have room for eight times as many. */
+export function checkRoom(layout: Layout, { side, layers }: TextureLimits): void {
+  const glossy = layout.nodeCount - layout.flatCount;
+  for (const [what, count, most] of [
+    ['glossy nodes', glossy, side * kNodesInRow], ['coefficients of lobes', layout.coefficientCount, layers * kSide ** 2],
+  ] as const) {
+    if (count > most) {
+      throw new Problem(`The solution has ${count} ${what}, and the graphics card has room for ${most}: solve it with larger elements or a lower --lmax.`);
+    }
+  }
+}
+
 export type Precision = 'half' | 'float';
 
 export class LobeTextures {
   readonly uniforms: Record<'coefficients' | 'coefficientUnit' | 'table' | 'steps' | 'degree', IUniform>;
 
-  constructor(solution: Solution, layout: Layout, readonly precision: Precision) {
+  constructor(solution: Solution, layout: Layout, precision: Precision) {
     const { texture, unit } = coefficientTexture(solution, layout, precision);
     this.uniforms = {
       coefficients: { value: texture },

@@ -56,7 +56,8 @@ export class NodeLight {
           vec3 wo = normalize(eye - uintBitsToFloat(place.xyz));
           // docs/conventions.md#frame
           vec3 n = uintBitsToFloat(way.xyz);
-          float s = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (s + n.z), b = n.x * n.y * a;
+          // By the sign's own bit: -0 has one, too.
+          float s = (way.z >> 31) != 0u ? -1.0 : 1.0, a = -1.0 / (s + n.z), b = n.x * n.y * a;
           vec3 ex = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), ey = vec3(b, s + n.y * n.y * a, -n.y);
           // docs/conventions.md#horizon
           vec2 disc = vec2(dot(ex, wo), dot(ey, wo));

@@ -1,7 +1,8 @@
 import {
-  Box3, Color, HalfFloatType, LinearFilter, NearestFilter, RGBAFormat, Sphere, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget,
+  Color, HalfFloatType, LinearFilter, NearestFilter, RGBAFormat, Sphere, Vector2, WebGLRenderer, WebGLRenderTarget,
   type Group, type PerspectiveCamera,
 } from 'three';
+import { boundsOf } from '../solution/bounds';
 import { Problem } from '../solution/problem';
 import type { Solution } from '../solution/solution';
 import type { Quantity, Settings } from './settings';
@@ -42,12 +43,10 @@ export class Picture {
   readonly stats: DrawStats = { frames: 0, frameMs: 0, uploadedBytes: 0, drawCalls: 0, triangles: 0 };
   private readonly gl: WebGL2RenderingContext;
   private readonly renderer: WebGLRenderer;
-  private readonly fine: WebGLRenderTarget;
-  private readonly coarse: WebGLRenderTarget;
-  private readonly box = new Box3();
+  /** All that the GPU holds. */
+  private held: { resident: Resident; fine: WebGLRenderTarget; coarse: WebGLRenderTarget };
   private readonly sphere = new Sphere();
   private readonly values = new Map<Quantity, Float32Array>();
-  private resident: Resident;
   private lost = false;
 
   /** Throws Problem where the browser cannot draw. `onRestored` is called when a GPU that had forgotten everything has
@@ -69,25 +68,27 @@ export class Picture {
     this.renderer = new WebGLRenderer({ canvas, context: gl });
     this.renderer.autoClear = false;
     this.renderer.info.autoReset = false;
-    this.renderer.setClearColor(new Color(0), 0);
     const light = { format: RGBAFormat, type: HalfFloatType, minFilter: NearestFilter } as const;
     const samples = Math.min(kSamples, gl.getParameter(gl.MAX_SAMPLES) as number);
-    this.fine = new WebGLRenderTarget(1, 1, { ...light, magFilter: NearestFilter, samples });
-    this.coarse = new WebGLRenderTarget(1, 1, { ...light, magFilter: LinearFilter });
-
-    const part = new Box3();
-    for (const { positions } of solution.patches) this.box.union(part.setFromArray(positions));
-    if (solution.faces) this.box.union(part.setFromArray(solution.faces.positions));
-    if (this.box.isEmpty()) this.box.set(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-    this.box.getBoundingSphere(this.sphere);
-
-    const build = () => new Resident(this.renderer, solution, this.box, floats, precision, (q) => this.numbers(q));
-    this.resident = build();
+    const limits = {
+      side: gl.getParameter(gl.MAX_TEXTURE_SIZE) as number, layers: gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number,
+    };
+    const box = boundsOf(solution);
+    box.getBoundingSphere(this.sphere);
+    const build = () => {
+      this.renderer.setClearColor(new Color(0), 0);
+      return {
+        resident: new Resident(this.renderer, solution, box, floats, precision, limits, (q) => this.numbers(q)),
+        fine: new WebGLRenderTarget(1, 1, { ...light, magFilter: NearestFilter, samples }),
+        coarse: new WebGLRenderTarget(1, 1, { ...light, magFilter: LinearFilter }),
+      };
+    };
+    this.held = build();
     canvas.addEventListener('webglcontextlost', () => (this.lost = true));
     canvas.addEventListener('webglcontextrestored', () => {
       // three has begun anew by now, and what the GPU held is gone. It is kept nowhere else: it is made again.
       this.lost = false;
-      this.resident = build();
+      this.held = build();
       onRestored();
     });
   }
@@ -110,50 +111,60 @@ export class Picture {
     this.renderer.setSize(width, height, false);
   }
 
-  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, coarsely = false): void {
-    if (this.lost) return;
+  /** Says whether the picture is all that it can be: not if it is coarse, nor, unless it `stands`, as long as probes
+   *  of mirrors show lobes of a degree before. */
+  draw(
+    camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, coarsely = false, stands = !coarsely,
+  ): boolean {
+    if (this.lost) return true;
     const start = performance.now();
     this.renderer.info.reset();
     this.fitDepth(camera);
     camera.updateMatrixWorld();
     const size = this.renderer.getDrawingBufferSize(new Vector2());
-    const target = coarsely ? this.coarse : this.fine, scale = coarsely ? kCoarse : 1;
+    const { resident, fine, coarse } = this.held;
+    const target = coarsely ? coarse : fine, scale = coarsely ? kCoarse : 1;
     target.setSize(Math.ceil(size.x * scale), Math.ceil(size.y * scale));
-    this.resident.draw(camera, settings, target);
+    const whole = resident.draw(camera, settings, target, stands);
     this.renderer.setRenderTarget(null);
-    this.resident.show(target, settings, size);
+    resident.show(target, settings, size);
     const some = overlay?.visible && overlay.children.some((child) => child.visible);
-    this.resident.drawOver(camera, settings, some ? overlay : null);
+    resident.drawOver(camera, settings, some ? overlay : null);
     ++this.stats.frames;
     this.stats.frameMs = performance.now() - start;
     this.stats.drawCalls = this.renderer.info.render.calls;
     this.stats.triangles = this.renderer.info.render.triangles;
+    return whole && !coarsely;
   }
 
   /** What a canvas of that size would show, read back. The canvas is as before, but has to be drawn again. */
   capture(
     camera: PerspectiveCamera, settings: Readonly<Settings>, overlay: Group | null, width: number, height: number,
   ): Captured {
+    if (this.lost) throw new Problem('The graphics card has let go of this page; it draws again once the browser has got it back.');
     const most = Math.min(this.gl.getParameter(this.gl.MAX_RENDERBUFFER_SIZE) as number, 16384);
-    if (!(width >= 1 && height >= 1 && width <= most && height <= most)) {
-      throw new Problem(`A picture of ${width} x ${height} pixels was asked for; here each side can have 1 to ${most}.`);
+    if (![width, height].every((side) => Number.isInteger(side) && side >= 1 && side <= most)) {
+      throw new Problem(`A picture of ${width} x ${height} pixels was asked for; here each side can have 1 to ${most}, whole ones.`);
     }
     const { renderer, gl } = this;
     const size = renderer.getSize(new Vector2()), ratio = renderer.getPixelRatio();
     const { frames, frameMs } = this.stats;
-    this.resize(width, height, 1);
     const eye = camera.clone();
     eye.aspect = width / height;
     eye.updateProjectionMatrix();
-    this.draw(eye, settings, overlay);
-    const rows = new Uint8ClampedArray(4 * width * height), pixels = new Uint8ClampedArray(rows.length);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(rows.buffer));
-    for (let y = 0; y < height; ++y) {
-      pixels.set(rows.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
+    try {
+      this.resize(width, height, 1);
+      this.draw(eye, settings, overlay);
+      const rows = new Uint8ClampedArray(4 * width * height), pixels = new Uint8ClampedArray(rows.length);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(rows.buffer));
+      for (let y = 0; y < height; ++y) {
+        pixels.set(rows.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
+      }
+      return { width, height, pixels };
+    } finally {
+      this.resize(size.x, size.y, ratio);
+      Object.assign(this.stats, { frames, frameMs });
     }
-    this.resize(size.x, size.y, ratio);
-    Object.assign(this.stats, { frames, frameMs });
-    return { width, height, pixels };
   }
 
   /** Near and far planes that hold the scene and what may stand out of it a little. */

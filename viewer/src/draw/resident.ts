@@ -2,7 +2,7 @@ import { Mesh, Scene, Vector3, type Vector2, type Box3, type PerspectiveCamera, 
 import type { Solution } from '../solution/solution';
 import type { Settings } from './settings';
 import { bySlot, layOut, type Layout } from './layout';
-import { LobeTextures, type Precision } from './lobe_textures';
+import { checkRoom, LobeTextures, type Precision, type TextureLimits } from './lobe_textures';
 import { NodeLight } from './node_light';
 import { Speculars } from './speculars';
 import { asMesh, Surfaces } from './surfaces';
@@ -10,7 +10,7 @@ import { Tone, type Content } from './tone';
 
 /** All of a solution that the GPU holds, and the passes over it. */
 export class Resident {
-  readonly tone: Tone;
+  private readonly tone: Tone;
   private readonly scene = new Scene();
   /** Depths alone, and what is drawn over the picture. */
   private readonly over = new Scene();
@@ -24,10 +24,12 @@ export class Resident {
 
   constructor(
     private readonly renderer: WebGLRenderer, solution: Solution, box: Box3, floats: boolean, precision: Precision,
+    limits: TextureLimits,
     /** One number a node of the whole solution. */
     private readonly valuesOf: (quantity: NonNullable<Settings['falseColour']>['quantity']) => Float32Array,
   ) {
     this.layout = layOut(solution);
+    checkRoom(this.layout, limits);
     this.lobes = new LobeTextures(solution, this.layout, precision);
     this.nodeLight = new NodeLight(this.layout, this.lobes, floats);
     const { coefficients, coefficientUnit } = this.lobes.uniforms;
@@ -68,16 +70,17 @@ export class Resident {
     }
   }
 
-  /** The scene, in linear light. */
-  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, target: WebGLRenderTarget): void {
+  /** The scene, in linear light. Says whether probes show it as it is now; while it `stands`, they do. */
+  draw(camera: PerspectiveCamera, settings: Readonly<Settings>, target: WebGLRenderTarget, stands: boolean): boolean {
     this.apply(settings);
     const { renderer } = this;
     const evaluate = (eye: Vector3) => this.nodeLight.evaluate(renderer, eye);
-    this.speculars?.prepare(renderer, this.scene, camera, target.width, target.height, target.samples, evaluate);
+    const whole = this.speculars?.prepare(renderer, this.scene, camera, target, stands, evaluate) ?? true;
     evaluate(new Vector3().setFromMatrixPosition(camera.matrixWorld));
     renderer.setRenderTarget(target);
     renderer.clear();
     renderer.render(this.scene, camera);
+    return whole;
   }
 
   /** From `target` to the render target that is set, of `size` pixels. */

@@ -1,4 +1,11 @@
-/** How the scene is shown. Everything here may change between two frames at the cost of a uniform. */
+/**
+ * How the scene is shown. Everything here may change between two frames: exposure, curve, scale and backs for a uniform;
+ * the degree for all glossy lobes anew, and mirrors' probes; a quantity and the wires for what is sent at first.
+ */
+import { kMostDegree } from '../solution/solution';
+
+export { kMostDegree };
+
 export interface Settings {
   /** Stops: radiance is shown times 2^exposure, as `lobe render --exposure`. */
   exposure: number;
@@ -26,8 +33,6 @@ export interface FalseColour {
   high: number;
   logarithmic: boolean;
 }
-
-export const kMostDegree = 64;
 
 export const defaultSettings: Settings = {
   exposure: 0,

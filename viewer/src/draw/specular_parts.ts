@@ -1,6 +1,7 @@
 /** What of a solution reflects as a mirror or lets see through, cut into parts that are drawn as one. */
 import { Box3, Plane, Vector3 } from 'three';
 import type { Faces, Solution } from '../solution/solution';
+import { areaOf } from '../solution/triangles';
 import { isFlat, type Layout, type PlacedPatch } from './layout';
 
 export interface SpecularPart {
@@ -19,6 +20,7 @@ export interface SpecularPart {
 }
 
 const kFlat = 1e-4;  // of unit normals; of offsets, in scene diagonals
+const kNothing = 1e-12;  // of areas, in squares of the scene's diagonal
 
 /** A planar mirror is what coplanar patches of one material make; every curved patch is one by itself. */
 export function mirrorsOf(solution: Solution, layout: Layout, diagonal: number): SpecularPart[] {
@@ -37,17 +39,10 @@ export function mirrorsOf(solution: Solution, layout: Layout, diagonal: number):
     if (!part) parts.push((part = { material: patch.material, plane, box: new Box3(), area: 0, volume: 0, patches: [], glass: null }));
     part.patches.push(placed);
     part.box.union(new Box3().setFromArray(patch.positions as never));
-    for (let e = 0; e < patch.indices.length; e += 3) {
-      const corners = [0, 1, 2].map((k) => new Vector3().fromArray(patch.positions, 3 * patch.indices[e + k]));
-      part.area += area(...(corners as Corners));
-    }
+    for (let e = 0; e < patch.indices.length / 3; ++e) part.area += areaOf(patch, e);
   }
   return parts;
 }
-
-type Corners = [Vector3, Vector3, Vector3];
-
-const area = (a: Vector3, b: Vector3, c: Vector3): number => b.clone().sub(a).cross(c.clone().sub(a)).length() / 2;
 
 export function isSame(a: Plane, b: Plane, diagonal: number): boolean {
   return a.normal.distanceTo(b.normal) < kFlat && Math.abs(a.constant - b.constant) < kFlat * diagonal;
@@ -103,10 +98,13 @@ function glassPart(faces: Faces, piece: readonly number[], diagonal: number): Sp
       positions.set(faces.positions.subarray(v, v + 3), 9 * at + 3 * k);
       normals.set(faces.normals.subarray(v, v + 3), 9 * at + 3 * k);
       return new Vector3().fromArray(faces.positions, v);
-    }) as Corners;
+    }) as [Vector3, Vector3, Vector3];
     corners.forEach((c) => part.box.expandByPoint(c));
-    part.area += area(...corners);
+    const area = areaOf(faces, f);
+    part.area += area;
     part.volume += corners[0].dot(corners[1].clone().cross(corners[2])) / 6;
+    // A triangle without area has no plane.
+    if (area < kNothing * diagonal ** 2) return;
     const plane = new Plane().setFromCoplanarPoints(...corners);
     part.plane ??= plane;
     flat &&= isSame(part.plane, plane, diagonal) || isSame(part.plane, plane.negate(), diagonal);

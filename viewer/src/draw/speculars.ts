@@ -45,10 +45,11 @@ interface Probe {
   target: WebGLCubeRenderTarget;
 }
 
+/** The eye behind the mirror, and what it sees: for each picture that shows it, as large and with as many samples, as
+ *  coarse and fine ones take turns. */
 interface View {
-  plane: Plane;
-  target: WebGLRenderTarget;
   camera: MirroredCamera;
+  targets: Map<WebGLRenderTarget, WebGLRenderTarget>;
 }
 
 /** `lookup(position, normal)`: light that arrives from where a mirror shows it, and Fresnel's factor. */
@@ -93,11 +94,11 @@ export class Speculars {
   readonly parts: Drawn[] = [];
   private readonly views: View[] = [];
   private readonly probes: Probe[] = [];
-  private readonly geometries: BufferGeometry[] = [];
   private readonly shared: Record<'size' | 'boxLow' | 'boxHigh' | 'unit', IUniform>;
   private readonly diagonal: number;
   private readonly bases: Mesh[];
-  private probesAreOld = true;
+  /** Probes of lobes as they were are `old`. */
+  private probing: 'missing' | 'old' | 'new' = 'missing';
   private numbers = false;
 
   /** Null if the scene has neither mirrors nor glass. */
@@ -142,7 +143,7 @@ export class Speculars {
 
   /** Lobes look different from now on, so what was drawn of them does. */
   forget(): void {
-    this.probesAreOld = true;
+    if (this.probing === 'new') this.probing = 'old';
   }
 
   /** In false colours mirrors show their own number, and glass is not there. */
@@ -157,14 +158,17 @@ export class Speculars {
     for (const mesh of this.bases) mesh.visible = !numbers;
   }
 
-  /** Renders what the coming picture reflects. `beforeEye` makes ready what depends on where the eye is. */
+  /**
+   * Renders what `picture` will reflect. `beforeEye` makes ready what depends on where the eye is. Probes are many
+   * pictures: they wait until the scene `stands`. Says whether they do not.
+   */
   prepare(
-    renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, width: number, height: number, samples: number,
+    renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, picture: WebGLRenderTarget, stands: boolean,
     beforeEye: (eye: Vector3) => void,
-  ): void {
-    if (this.numbers) return;
-    if (this.probesAreOld) this.renderProbes(renderer, scene, beforeEye);
-    (this.shared.size.value as Vector2).set(width, height);
+  ): boolean {
+    if (this.numbers) return true;
+    if (this.probing === 'missing' || (this.probing === 'old' && stands)) this.renderProbes(renderer, scene, beforeEye);
+    (this.shared.size.value as Vector2).set(picture.width, picture.height);
     for (const p of this.parts) {
       p.uniforms.source.value = Source.probe;
       p.uniforms.view.value = null;
@@ -175,21 +179,18 @@ export class Speculars {
     const mirrorPlane = backdrop.mirrorPlane?.value as Vector4 | undefined;
     const chosen = this.choose(camera);
     chosen.forEach(({ plane, parts }, i) => {
-      const view = (this.views[i] ??= {
-        plane, camera: new MirroredCamera(),
-        target: new WebGLRenderTarget(width, height, { format: RGBAFormat, type: HalfFloatType, samples }),
-      });
-      view.target.setSize(width, height);
+      const view = (this.views[i] ??= { camera: new MirroredCamera(), targets: new Map() });
+      const { camera: mirrored } = view, target = targetOf(view, picture);
       const centre = box.getCenter(new Vector3());
-      view.camera.reflect(camera, plane, kSlack * this.diagonal, (eye) => eye.distanceTo(centre) + this.diagonal);
+      mirrored.reflect(camera, plane, kSlack * this.diagonal, (eye) => eye.distanceTo(centre) + this.diagonal);
       mirrorPlane?.set(plane.normal.x, plane.normal.y, plane.normal.z, plane.constant);
       for (const { meshes } of parts) for (const mesh of meshes) mesh.visible = false;
-      const eye = new Vector3().setFromMatrixPosition(view.camera.matrixWorld);
+      const eye = new Vector3().setFromMatrixPosition(mirrored.matrixWorld);
       beforeEye(eye);
       this.sortFor(eye);
-      renderer.setRenderTarget(view.target);
+      renderer.setRenderTarget(target);
       renderer.clear();
-      renderer.render(scene, view.camera);
+      renderer.render(scene, mirrored);
       for (const { meshes } of parts) for (const mesh of meshes) mesh.visible = true;
     });
     mirrorPlane?.copy(nowhere);
@@ -197,10 +198,11 @@ export class Speculars {
     chosen.forEach(({ parts }, i) => {
       for (const { uniforms } of parts) {
         uniforms.source.value = Source.view;
-        uniforms.view.value = this.views[i].target.texture;
+        uniforms.view.value = targetOf(this.views[i], picture).texture;
       }
     });
     this.sortFor(new Vector3().setFromMatrixPosition(camera.matrixWorld));
+    return this.probing === 'new';
   }
 
   /** The planes that look largest, turned to the eye. */
@@ -258,7 +260,7 @@ export class Speculars {
 
   /** Probes are taken without glass and without the backs of faces: a curved mirror's sits inside of it. */
   private renderProbes(renderer: WebGLRenderer, scene: Scene, beforeEye: (eye: Vector3) => void): void {
-    this.probesAreOld = false;
+    this.probing = 'new';
     const backs = this.surfaces.backdrop.visible;
     const backdrop = (this.surfaces.backdrop.material as RawShaderMaterial).uniforms;
     const seeThrough = backdrop.seeThrough?.value as boolean | undefined;
@@ -310,7 +312,6 @@ export class Speculars {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(part.glass!.positions, 3));
     geometry.setAttribute('normal', new BufferAttribute(part.glass!.normals, 3));
-    this.geometries.push(geometry);
     const all = { ...uniforms, transmission: { value: new Vector3(...transmission) } };
     const pass = (side: Side, adds: boolean) => asMesh(geometry, new RawShaderMaterial({
       glslVersion: GLSL3, side, transparent: true, depthWrite: false, uniforms: all,
@@ -355,6 +356,13 @@ export class Speculars {
 function passedAtSurface({ area, volume }: SpecularPart, { transmission, extinction }: Material): Rgb {
   const meanChord = (4 * volume) / area;  // of a convex body: Cauchy
   return transmission!.map((t, c) => t * Math.exp((-extinction[c] * meanChord) / 2)) as Rgb;
+}
+
+function targetOf({ targets }: View, picture: WebGLRenderTarget): WebGLRenderTarget {
+  let target = targets.get(picture);
+  if (!target) targets.set(picture, (target = picture.clone()));
+  target.setSize(picture.width, picture.height);
+  return target;
 }
 
 function normalsBySlot(layout: Layout): BufferAttribute {

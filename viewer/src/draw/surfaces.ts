@@ -6,12 +6,13 @@
  * the lamps.
  */
 import {
-  BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, FrontSide, GLSL3, LineSegments, Mesh,
-  NearestFilter, NoBlending, RawShaderMaterial, RGBAFormat, Vector2, type IUniform, type Texture,
+  BufferAttribute, BufferGeometry, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, NoBlending, RawShaderMaterial, Vector2,
+  type IUniform, type Texture,
 } from 'three';
-import type { Material, Solution } from '../solution/solution';
+import type { Solution } from '../solution/solution';
 import { backdropMaterial, backsMaterial, depthMaterial, faceGeometry, kBrightest, wireMaterial } from './backdrop';
 import { categories, colourTexture, falseColourGlsl } from './colour_map';
+import { emissionGlsl, emissionTexture } from './emission';
 import { edgesOf, elementsOf, isFlat, type Layout, type PlacedPatch } from './layout';
 import { kNodesInRow } from './lobe_textures';
 import { srgbGlsl } from './tone';
@@ -38,14 +39,15 @@ precision highp float;
 precision highp int;
 uniform mat4 modelViewMatrix, projectionMatrix;
 uniform highp sampler2DArray coefficients;
-uniform highp sampler2D emission, redOfNodes, greenOfNodes, blueOfNodes;
+uniform highp sampler2D redOfNodes, greenOfNodes, blueOfNodes;
 uniform float coefficientUnit;
 uniform int flatCount;
 in vec3 position;
-in vec2 state;                // row of the table of emission; 1: not hidden
+in vec2 state;                // emitter; 1: not hidden
 centroid out vec4 light;      // radiance, 1; times the node's weight
 flat out vec3 emitted;
 ${glossy ? 'centroid out vec3 at, redSlope, greenSlope, blueSlope;' : ''}
+${emissionGlsl}
 ${declarations}
 void main() {
   int slot = gl_VertexID;
@@ -61,7 +63,7 @@ void main() {
   vec3 radiance = texelFetch(coefficients, ivec3(slot & 2047, (slot >> 11) & 2047, slot >> 22), 0).rgb *
                   (coefficientUnit * ${Math.sqrt(1 / Math.PI)});  // Z_00`}
   light = vec4(radiance, 1.0) * state.y;
-  emitted = texelFetch(emission, ivec2(int(state.x), 0), 0).rgb;
+  emitted = emissionOf(int(state.x));
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   ${more}
 }
@@ -89,18 +91,6 @@ vec3 stored(vec3 radiance) { return min(radiance * unit, ${kBrightest}.0); }
 
 export const plainMain = 'void main() { pixel = vec4(stored(leaving()), 1.0); }';
 
-function emissionTexture(materials: readonly Material[]): Texture {
-  const data = new Float32Array(8 * materials.length + 8);
-  materials.forEach((m, i) => {
-    data.set(m.emission, 8 * i);
-    if (m.doubleSided) data.set(m.emission, 8 * i + 4);
-  });
-  const texture = new DataTexture(data, 2 * materials.length + 2, 1, RGBAFormat, FloatType);
-  texture.minFilter = texture.magFilter = NearestFilter;
-  texture.needsUpdate = true;
-  return texture;
-}
-
 export class Surfaces {
   readonly uniforms: PatchUniforms;
   /** Flat ones, glossy ones. */
@@ -118,7 +108,7 @@ export class Surfaces {
     solution: Solution, private readonly layout: Layout, shared: Pick<PatchUniforms, 'coefficients' | 'coefficientUnit'>,
     nodeLight: readonly Texture[], unit: number, opaque: readonly PlacedPatch[],
   ) {
-    const positions = new Float32Array(3 * layout.nodeCount), states = new Uint16Array(2 * layout.nodeCount);
+    const positions = new Float32Array(3 * layout.nodeCount), states = new Float32Array(2 * layout.nodeCount);
     for (const { patch, firstSlot } of layout.patches) {
       positions.set(patch.positions, 3 * firstSlot);
       for (let i = 0; i < patch.positions.length / 3; ++i) {

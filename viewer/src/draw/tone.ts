@@ -1,7 +1,9 @@
 import { GLSL3, NoBlending, RawShaderMaterial, Vector2, type Texture, type WebGLRenderer } from 'three';
+import { kLuminance } from '../solution/luminance';
 import { toneCurves, type Settings } from './settings';
 import { colourTexture, falseColourGlsl } from './colour_map';
 import { FullScreen, fullScreenVertex } from './full_screen';
+import { curveGlsl } from './tone_curves';
 
 /** Exact sRGB (IEC 61966-2-1), to and from. */
 export const srgbGlsl = /* glsl */ `
@@ -10,21 +12,6 @@ vec3 encodeSrgb(vec3 v) {
 }
 vec3 decodeSrgb(vec3 v) {
   return mix(pow((v + 0.055) / 1.055, vec3(2.4)), v / 12.92, lessThanEqual(v, vec3(0.04045)));
-}
-`;
-
-/** The curves of render/tone.cpp, the letters Hable's. */
-const curveGlsl = /* glsl */ `
-float reinhard(float x) { return x >= 4.0 ? 1.0 : min(1.0, x * (1.0 + x / 16.0) / (1.0 + x)); }
-float hableUnscaled(float x) {
-  const float A = 0.15, B = 0.50, C = 0.10, D = 0.20, E = 0.02, F = 0.30;
-  return (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
-}
-float hable(float x) { return x >= 5.6 ? 1.0 : clamp(hableUnscaled(2.0 * x) / hableUnscaled(11.2), 0.0, 1.0); }
-vec3 curved(vec3 v) {
-  if (curve == 1) return vec3(reinhard(v.r), reinhard(v.g), reinhard(v.b));
-  if (curve == 2) return vec3(hable(v.r), hable(v.g), hable(v.b));
-  return min(v, 1.0);
 }
 `;
 
@@ -53,14 +40,14 @@ export class Tone {
         uniform highp sampler2D picture;
         uniform vec2 size;
         uniform float gain;
-        uniform int curve, content;
+        uniform int content;
         out vec4 shown;
         ${falseColourGlsl} ${srgbGlsl} ${curveGlsl}
         void main() {
           vec4 pixel = texture(picture, gl_FragCoord.xy / size);
           vec3 display;
           if (content == 0) display = encodeSrgb(curved(max(pixel.rgb, 0.0) * gain));
-          else if (content == 1) display = pixel.a * falseColour(dot(pixel.rgb, vec3(0.2126, 0.7152, 0.0722)) * gain);
+          else if (content == 1) display = pixel.a * falseColour(dot(pixel.rgb, vec3(${kLuminance})) * gain);
           else display = encodeSrgb(clamp(pixel.rgb, 0.0, 1.0));
           shown = vec4(floor(display * 255.0 + 0.5) / 255.0, 1.0);
         }`,

@@ -1,9 +1,10 @@
 /** What is said of a lobe, by the definitions of `lobe inspect` (render/lobe_figures.h) and docs/conventions.md. */
 import type { Vec3 } from '../sh/frame';
 import type { Rgb } from '../solution/solution';
+import { negativePart } from '../sh/negative_part';
+import { PolarGrid } from '../sh/polar_grid';
 import { coefficientIndex } from '../sh/zernike';
 import { LobeReader, luminanceOf, radianceTowards, type Lobe } from './lobe';
-import { PolarGrid } from './polar_grid';
 
 export interface Peak {
   /** Local, unit: where luminance is greatest. */
@@ -47,29 +48,18 @@ export function errorOfCut(lobe: Lobe, degree: number): number {
   return all > 0 ? Math.sqrt(sum(energy.slice(degree + 1)) / all) : 0;
 }
 
-interface Rules {
-  /** Rings of equal area of the disc: equal shares of cos θ dω. */
-  flux: PolarGrid;
-  /** Rings of equal height: equal solid angles. */
-  solid: PolarGrid;
-}
-
 // A page looks at lobes of a few degrees, again and again.
-const rulesOf = new Map<number, Rules>();
+const grids = new Map<number, PolarGrid>();
 
-function rulesFor(lMax: number): Rules {
-  let rules = rulesOf.get(lMax);
-  if (!rules) {
-    // As brdf/lobe_accuracy.cpp and render/lobe_figures.cpp count them.
-    const flux = 24 + 2 * lMax, solid = Math.max(48, 4 * lMax);
-    rules = {
-      flux: new PolarGrid(lMax, Array.from({ length: flux }, (_, i) => Math.sqrt((i + 0.5) / flux)), 2 * flux, 0.5),
-      solid: new PolarGrid(
-        lMax, Array.from({ length: solid }, (_, i) => Math.sqrt(1 - ((i + 0.5) / solid) ** 2)), 2 * solid, 0.5),
-    };
-    rulesOf.set(lMax, rules);
+/** Rings of equal height: equal solid angles. As many as render/lobe_figures.cpp takes. */
+function solidGridFor(lMax: number): PolarGrid {
+  let grid = grids.get(lMax);
+  if (!grid) {
+    const rings = Math.max(48, 4 * lMax);
+    grid = new PolarGrid(lMax, Array.from({ length: rings }, (_, i) => Math.sqrt(1 - ((i + 0.5) / rings) ** 2)), 2 * rings, 0.5);
+    grids.set(lMax, grid);
   }
-  return rules;
+  return grid;
 }
 
 /** Climbs by steps that halve whenever no neighbour is higher, in the disc, where nothing is singular at the pole. */
@@ -118,19 +108,16 @@ function peakOf(lobe: Lobe, luminance: Float64Array, solid: PolarGrid, values: F
 
 export function measureLobe(lobe: Lobe): Figures {
   const luminance = luminanceOf(lobe);
-  const rules = rulesFor(lobe.lMax);
-  const solid = rules.solid.evaluate(luminance), disc = rules.flux.evaluate(luminance);
-  let below = 0, magnitude = 0, belowFlux = 0;
+  const grid = solidGridFor(lobe.lMax), solid = grid.evaluate(luminance);
+  let below = 0, magnitude = 0;
   for (const value of solid) {
     below += Math.max(0, -value);
     magnitude += Math.abs(value);
   }
-  for (const value of disc) belowFlux += Math.max(0, -value);
-  const flux = luminance[0] * Math.sqrt(Math.PI);
   return {
     flux: fluxOf(lobe),
-    peak: peakOf(lobe, luminance, rules.solid, solid),
-    negative: flux > 0 ? (belowFlux * Math.PI) / disc.length / flux : 0,
+    peak: peakOf(lobe, luminance, grid, solid),
+    negative: negativePart(lobe.lMax, luminance),
     negativeFraction: magnitude > 0 ? below / magnitude : 0,
   };
 }

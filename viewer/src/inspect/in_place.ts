@@ -4,10 +4,10 @@ import {
   ShaderMaterial, Vector3,
 } from 'three';
 import type { ToneCurve } from '../draw/settings';
+import { toneMap } from '../draw/tone_curves';
 import { kGhostColour, kNegativeColour } from './colours';
 import type { Inspection } from './inspection';
 import { surfaceOf } from './surface';
-import { toneMap } from './tone';
 
 export interface Look {
   /** Metres that `reach` (W m⁻² sr⁻¹) is drawn long. */

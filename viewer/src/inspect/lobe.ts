@@ -1,6 +1,7 @@
 /** One lobe, over Zernike's basis (sh/zernike.ts): what is done with it before anything is drawn or said. */
 import { coefficientCount, zernikeBasis } from '../sh/zernike';
 import type { Vec3 } from '../sh/frame';
+import { luminance } from '../solution/luminance';
 import type { Patch, Rgb } from '../solution/solution';
 
 export interface Lobe {
@@ -8,9 +9,6 @@ export interface Lobe {
   /** Per channel (red, green, blue), coefficientCount(lMax) of them; W m⁻² sr⁻¹, the node's frame. */
   channels: readonly [Float64Array, Float64Array, Float64Array];
 }
-
-/** ITU-R BT.709-6, item 3.2: as everywhere in Lobe. */
-export const kLuminance: Rgb = [0.2126, 0.7152, 0.0722];
 
 /** The lobe of a patch's node; null if the patch is black. */
 export function lobeOfNode(patch: Patch, local: number): Lobe | null {
@@ -31,7 +29,7 @@ export function cutLobe(lobe: Lobe, degree: number): Lobe {
 /** Coefficients of luminance. */
 export function luminanceOf(lobe: Lobe): Float64Array {
   const [r, g, b] = lobe.channels;
-  return Float64Array.from(r, (_, k) => kLuminance[0] * r[k] + kLuminance[1] * g[k] + kLuminance[2] * b[k]);
+  return Float64Array.from(r, (_, k) => luminance([r[k], g[k], b[k]]));
 }
 
 /** Reads coefficients of one channel, or of luminance, towards local directions one by one. */

@@ -5,17 +5,18 @@ import {
 import type { Solution } from '../solution/solution';
 import { findNode } from '../solution/solution';
 
-// Both lie in the surface: a little nearer in depth, at any distance, they are never lost in it.
-const kNearer = 'gl_Position.z -= 2e-4 * gl_Position.w;';
+// Both lie in the surface: towards the eye by a thousandth of the way, they are never lost in it.
+const kPosition = `
+      vec4 seen = modelViewMatrix * vec4(position, 1.0);
+      seen.xyz *= 0.999;
+      gl_Position = projectionMatrix * seen;`;
 
 const dots = {
   vertexShader: `
     attribute float size;
     uniform float pixelRatio;
     varying float radius;
-    void main() {
-      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-      ${kNearer}
+    void main() {${kPosition}
       radius = size * pixelRatio;
       gl_PointSize = 2.0 * radius + 2.0;
     }`,
@@ -37,9 +38,7 @@ const dots = {
 
 const line = {
   vertexShader: `
-    void main() {
-      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-      ${kNearer}
+    void main() {${kPosition}
     }`,
   fragmentShader: `
     uniform vec3 colour;
@@ -54,10 +53,12 @@ export class Markers {
   private readonly points: Points;
   private readonly outline: LineLoop;
 
-  constructor(colour: string, pixelRatio: number) {
-    const uniforms = { colour: { value: new Color(colour) }, pixelRatio: { value: pixelRatio } };
+  constructor(colour: string) {
+    const uniforms = { colour: { value: new Color(colour) }, pixelRatio: { value: 1 } };
     this.points = new Points(new BufferGeometry(), new ShaderMaterial({ ...dots, uniforms, transparent: true, depthWrite: false }));
     this.outline = new LineLoop(new BufferGeometry(), new ShaderMaterial({ ...line, uniforms, transparent: true, depthWrite: false }));
+    // The screen's, which changes with the window's place and the browser's zoom.
+    this.points.onBeforeRender = () => (uniforms.pixelRatio.value = window.devicePixelRatio);
     this.object.add(this.outline, this.points);
     for (const part of this.object.children) part.frustumCulled = false;
   }

@@ -36,7 +36,7 @@ export class Selection {
   private readonly stop: () => void;
 
   constructor(private readonly stage: Stage, private readonly diagonal: number) {
-    this.markers = [0, 1].map((seat) => new Markers(kLobeColours[seat], window.devicePixelRatio)) as [Markers, Markers];
+    this.markers = [0, 1].map((seat) => new Markers(kLobeColours[seat])) as [Markers, Markers];
     for (const seat of [0, 1] as const) stage.overlay.add(this.markers[seat].object, this.lobes[seat].object);
     this.stop = stage.onChange(() => this.follow());
     this.draw();

@@ -1,6 +1,7 @@
 /** A lobe as a surface: distance from the node = radiance's magnitude towards there. Arrays alone, no GPU. */
-import { kLuminance, type Lobe } from './lobe';
-import { PolarGrid } from './polar_grid';
+import { PolarGrid } from '../sh/polar_grid';
+import { kLuminance } from '../solution/luminance';
+import type { Lobe } from './lobe';
 
 export interface Surface {
   /** Local frame, in units of radiance, W m⁻² sr⁻¹; three floats a vertex. */

@@ -1,7 +1,7 @@
 import { GLTFLoader, type GLTF, type GLTFLoaderPlugin, type GLTFParser } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { checkContainer } from './container';
 import { Problem } from './problem';
-import { checkDocument, kExtension, readSolution, type Document, type Parser } from './read';
+import { checkDocument, kExtension, readSolution, type Parser } from './read';
 import type { Solution } from './solution';
 
 /**
@@ -134,5 +134,3 @@ export function loadFile(file: File): Promise<Solution> {
     return readBytes(isGzip(bytes) ? await unpack(bytes) : bytes, file.name, '');
   });
 }
-
-export type { Document };

@@ -3,12 +3,10 @@ import { DataUtils, InterleavedBufferAttribute, Matrix4, type BufferAttribute } 
 import { coefficientCount, toZernike } from '../sh/zernike';
 import { readMaterial, type GltfMaterial, type LobeMaterial } from './material';
 import { Problem } from './problem';
-import type { Faces, Lobes, NamedCamera, Patch, Side, Solution } from './solution';
+import { kMostDegree, type Faces, type Lobes, type NamedCamera, type Patch, type Side, type Solution } from './solution';
 
 export const kExtension = 'LOBE_directional_radiance';
 const kVersion = 1;
-/** Beyond what any solve makes; a larger number is damage. */
-const kMostDegree = 64;
 
 interface DocumentExtension {
   version?: number;
@@ -203,6 +201,8 @@ async function readPatch(parser: Parser, primitive: Primitive, surfaces: number,
   }
   const positions = await floats(parser, `${what}'s POSITION`, primitive.attributes.POSITION, 3);
   const nodes = positions.length / 3;
+  // For others, and still a part of every patch.
+  await floats(parser, `${what}'s COLOR_0`, primitive.attributes.COLOR_0, 3, nodes);
   const hidden =
     e.hidden === undefined ? null : Uint8Array.from(await numbers(parser, `${what}'s hidden`, e.hidden, 1, nodes));
   return {
@@ -214,7 +214,6 @@ async function readPatch(parser: Parser, primitive: Primitive, surfaces: number,
     firstNode: 0,
     positions,
     normals: await floats(parser, `${what}'s NORMAL`, primitive.attributes.NORMAL, 3, nodes),
-    baked: await floats(parser, `${what}'s COLOR_0`, primitive.attributes.COLOR_0, 3, nodes),
     indices: checkIndices(`${what}'s elements`, await numbers(parser, `${what}'s elements`, primitive.indices, 1), nodes),
     hidden,
     lobes: await readLobes(parser, what, e, nodes),
@@ -250,7 +249,6 @@ function readCameras(json: Document): NamedCamera[] {
       name,
       matrix: new Matrix4().fromArray(node.matrix),
       fovY: yfov,
-      aspect: aspectRatio,
     }];
   });
 }

@@ -7,6 +7,9 @@ import type { Matrix4 } from 'three';
 export type Rgb = [number, number, number];
 export type Side = 'front' | 'back';
 
+/** Beyond what any solve makes; a larger number is damage. */
+export const kMostDegree = 64;
+
 /** How the gloss of a material is held: none; a lobe; a lobe that blurs it, so renderers gather it; ideal mirror. */
 export type GlossKind = 'none' | 'lobe' | 'sharp' | 'mirror';
 
@@ -53,10 +56,9 @@ export interface Patch {
   planar: boolean;
   /** Number of its first node as `lobe inspect --node` counts. */
   firstNode: number;
-  /** Three floats a node: metres; unit shading normals, on the patch's side; the baked picture, linear. */
+  /** Three floats a node: metres; unit shading normals, on the patch's side. */
   positions: Float32Array;
   normals: Float32Array;
-  baked: Float32Array;
   /** Three nodes of this patch (from 0) an element, counter-clockwise. */
   indices: Uint32Array;
   /** Per node: 1, inside something, without weight. Null: none is. */
@@ -80,7 +82,6 @@ export interface NamedCamera {
   matrix: Matrix4;
   /** Vertical, radians. */
   fovY: number;
-  aspect: number;
 }
 
 export interface Solution {

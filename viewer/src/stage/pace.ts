@@ -13,15 +13,23 @@ export class Pace {
   private slow = false;
   private timer = 0;
 
-  /** `drawFinely` is called when what was last drawn coarsely stands. */
-  constructor(private readonly drawFinely: () => void) {}
+  /** `finish` is called when what was last drawn, and left unfinished, stands. */
+  constructor(private readonly finish: () => void) {}
 
   /** Before a frame that was asked for `lateness` milliseconds ago: whether to draw it coarsely. A browser calls late
-   *  when frames before are not done yet. */
-  isCoarse(lateness: number): boolean {
-    this.slow = lateness > (this.slow ? kQuick : kSlow);
-    clearTimeout(this.timer);
-    if (this.slow) this.timer = setTimeout(this.drawFinely, kStands) as unknown as number;
+   *  when frames before are not done yet. Without lateness, what was not asked for before: as the last one. */
+  isCoarse(lateness?: number): boolean {
+    if (lateness !== undefined) this.slow = lateness > (this.slow ? kQuick : kSlow);
     return this.slow;
+  }
+
+  /** After every frame: whether there is nothing left to finish. */
+  drawn(finished: boolean): void {
+    this.stop();
+    if (!finished) this.timer = setTimeout(this.finish, kStands) as unknown as number;
+  }
+
+  stop(): void {
+    clearTimeout(this.timer);
   }
 }

@@ -2,7 +2,7 @@
  * The scene on the canvas: camera, settings, what is drawn when. The panels know it by this class alone; how lobes get
  * to the screen is draw/'s.
  */
-import { Group, PerspectiveCamera, Ray, Vector2, Vector3, Raycaster } from 'three';
+import { Group, PerspectiveCamera, Vector2, Vector3, Raycaster, type Mesh, type Object3D } from 'three';
 import type { Solution } from '../solution/solution';
 import { Picture, type Captured, type DrawStats } from '../draw/picture';
 import { whyNot } from '../draw/quantities';
@@ -27,15 +27,32 @@ export class Stage {
   readonly overlay = new Group();
   private readonly picture: Picture;
   private current: Settings = { ...defaultSettings };
-  private asked = false;
+  /** Of requestAnimationFrame; 0: none is asked for. */
+  private asked = 0;
   private readonly pace = new Pace(() => this.drawNow());
   private readonly listeners = new Set<() => void>();
+  private readonly observer = new ResizeObserver(() => this.resize());
+  private readonly away = new AbortController();
+  private fitted = '';
 
   /** Throws Problem where the browser cannot draw. */
   constructor(readonly canvas: HTMLCanvasElement, readonly solution: Solution) {
     this.picture = new Picture(canvas, solution, () => this.redraw());
-    new ResizeObserver(() => this.resize()).observe(canvas);
-    this.resize();
+    // While the context is lost: in the next one three would delete by names of this one.
+    canvas.addEventListener('webglcontextlost', () => this.overlay.traverse(forget), { signal: this.away.signal });
+    this.observer.observe(canvas);
+    this.watchPixelRatio();
+    this.fit();
+    this.redraw();
+  }
+
+  /** Nothing is drawn any more, nor asked for. */
+  dispose(): void {
+    this.away.abort();
+    this.observer.disconnect();
+    cancelAnimationFrame(this.asked);
+    this.pace.stop();
+    this.listeners.clear();
   }
 
   get settings(): Readonly<Settings> {
@@ -69,26 +86,27 @@ export class Stage {
 
   /** Draws once, soon; coarsely for now, where frames come late. Nothing is drawn while nothing changes. */
   redraw(): void {
-    if (this.asked) return;
-    this.asked = true;
+    if (this.asked || this.away.signal.aborted) return;
     const since = performance.now();
-    requestAnimationFrame(() => {
-      this.asked = false;
-      this.picture.draw(this.camera, this.current, this.overlay, this.pace.isCoarse(performance.now() - since));
+    this.asked = requestAnimationFrame(() => {
+      this.asked = 0;
+      this.draw(performance.now() - since);
     });
   }
 
   /** Draws at once, finely: for screenshots and measurements. */
   drawNow(): void {
-    this.picture.draw(this.camera, this.current, this.overlay);
+    this.pace.drawn(this.picture.draw(this.camera, this.current, this.overlay));
   }
 
   /** The present pose at that size, in pixels, without the overlay unless asked for. The wires are settings', and come
    *  along. */
   capture(width: number, height: number, { overlay = false } = {}): Captured {
-    const captured = this.picture.capture(this.camera, this.current, overlay ? this.overlay : null, width, height);
-    this.drawNow();
-    return captured;
+    try {
+      return this.picture.capture(this.camera, this.current, overlay ? this.overlay : null, width, height);
+    } finally {
+      this.drawNow();
+    }
   }
 
   /** Whether a quantity can be shown in false colours; `whyNot` says in a sentence what it lacks. */
@@ -110,24 +128,58 @@ export class Stage {
     const rect = this.canvas.getBoundingClientRect();
     const caster = new Raycaster();
     caster.setFromCamera(new Vector2((2 * x) / rect.width - 1, 1 - (2 * y) / rect.height), this.camera);
-    return pickAlong(this.solution, new Ray(caster.ray.origin, caster.ray.direction));
+    return pickAlong(this.solution, caster.ray, this.current.seeThroughBacks);
   }
 
   get stats(): Readonly<DrawStats> {
     return this.picture.stats;
   }
 
+  private draw(lateness?: number): void {
+    const coarsely = this.pace.isCoarse(lateness);
+    this.pace.drawn(this.picture.draw(this.camera, this.current, this.overlay, coarsely, false));
+  }
+
+  /** Draws at once: sizes are observed after the frame's other work, and a canvas of a new size is black. */
   private resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || height === 0) return;
-    this.picture.resize(width, height, window.devicePixelRatio);
+    if (!this.fit()) return;
+    this.draw();
+    this.tell();
+  }
+
+  /** Says whether the size is a new one. */
+  private fit(): boolean {
+    const { clientWidth: width, clientHeight: height } = this.canvas, { devicePixelRatio } = window;
+    const now = `${width} ${height} ${devicePixelRatio}`;
+    if (width === 0 || height === 0 || now === this.fitted) return false;
+    this.fitted = now;
+    this.picture.resize(width, height, devicePixelRatio);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.changed();
+    return true;
+  }
+
+  /** It changes with the screen that the window is on, and with the browser's zoom. */
+  private watchPixelRatio(): void {
+    const { signal } = this.away;
+    matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => {
+      this.resize();
+      this.watchPixelRatio();
+    }, { once: true, signal });
   }
 
   private changed(): void {
-    for (const listener of this.listeners) listener();
+    this.tell();
     this.redraw();
   }
+
+  private tell(): void {
+    for (const listener of this.listeners) listener();
+  }
+}
+
+function forget(object: Object3D): void {
+  const { geometry, material } = object as Partial<Mesh>;
+  geometry?.dispose();
+  for (const one of [material ?? []].flat()) one.dispose();
 }

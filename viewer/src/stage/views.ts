@@ -1,30 +1,26 @@
 /** Poses that a solution suggests: its named cameras, all of it, a place in it. */
-import { Box3, Ray, Vector3 } from 'three';
+import { Ray, Vector3 } from 'three';
+import { boundsOf } from '../solution/bounds';
 import type { NamedCamera, Solution } from '../solution/solution';
 import { pickAlong } from './pick';
 import type { Pose } from './stage';
 
 const kUp = new Vector3(0, 1, 0);
-
-export function boundsOf(solution: Solution): Box3 {
-  const box = new Box3(), point = new Vector3();
-  for (const positions of [...solution.patches.map((p) => p.positions), solution.faces?.positions ?? new Float32Array()]) {
-    for (let i = 0; i < positions.length; i += 3) box.expandByPoint(point.fromArray(positions, i));
-  }
-  return box.isEmpty() ? new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1)) : box;
-}
+/** What a camera turns about is at least so far away, in scene diagonals. */
+const kNearest = 1e-4;
 
 /** What the camera sees, turning about what is in its middle. */
 export function poseOfCamera(solution: Solution, camera: NamedCamera): Pose {
   const column = (i: number) => new Vector3().setFromMatrixColumn(camera.matrix, i);
   const eye = column(3), ahead = column(2).normalize().negate();
-  const met = pickAlong(solution, new Ray(eye, ahead));
-  const distance = met?.distance ?? boundsOf(solution).getCenter(new Vector3()).distanceTo(eye);
+  const met = pickAlong(solution, new Ray(eye, ahead), true);
+  const box = boundsOf(solution);
+  const distance = met?.distance ?? box.getCenter(new Vector3()).distanceTo(eye);
   // A camera without roll may as well have the world's up, so that orbits stay level.
   const level = Math.abs(column(0).normalize().y) < 1e-4 && column(1).y > 0 && Math.abs(ahead.y) < 0.999;
   return {
     eye,
-    target: eye.clone().addScaledVector(ahead, Math.max(distance, 1e-3)),
+    target: eye.clone().addScaledVector(ahead, Math.max(distance, kNearest * box.min.distanceTo(box.max))),
     up: level ? kUp.clone() : column(1).normalize(),
     fov: (camera.fovY * 180) / Math.PI,
   };

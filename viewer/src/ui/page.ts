@@ -2,14 +2,15 @@
 import { Vector3 } from 'three';
 import { inspectNode, toJson, type LobeJson } from '../inspect/inspection';
 import { Selection, type Seat } from '../inspect/selection';
+import { boundsOf } from '../solution/bounds';
 import type { Solution } from '../solution/solution';
 import { formatAddress, parseAddress } from '../stage/address';
 import { Controls } from '../stage/controls';
 import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
-import { defaultSettings, kMostDegree, type Quantity } from '../draw/settings';
+import { defaultSettings, type Quantity, type Settings } from '../draw/settings';
 import { Stage, type Pose } from '../stage/stage';
-import { boundsOf, poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
+import { poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';
 import { download, region } from './dom';
 import { screenshot } from './screenshot';
@@ -104,7 +105,7 @@ export class Page {
       if (location.hash !== this.written) this.obeyAll(location.hash);
     }, { signal });
 
-    this.stage.set({ exposure: automaticExposure(solution), degree: kMostDegree });
+    this.stage.set(this.asAlways());
     this.stage.setPose(this.cameraPoses[0] ?? poseOfAll(solution));
     this.obey(location.hash);
     this.follow();
@@ -133,6 +134,7 @@ export class Page {
     this.flight.stop();
     this.selection.dispose();
     clearTimeout(this.writing);
+    this.stage.dispose();
     const { canvas } = this.stage;
     canvas.getContext('webgl2')?.getExtension('WEBGL_lose_context')?.loseContext();
     canvas.replaceWith(canvas.cloneNode());
@@ -170,12 +172,17 @@ export class Page {
 
   /** Of an address that somebody typed or pasted: what it leaves out is as always. */
   private obeyAll(hash: string): void {
-    const { exposure } = this.stage.settings;
-    this.stage.set({ ...defaultSettings, exposure });
+    this.stage.set(this.asAlways());
     this.setPinned(false);
     this.selection.take(1, null);
     this.selection.take(0, null);
     this.obey(hash);
+  }
+
+  /** Without cameras the eye starts where it sees all, and rooms show their black backs there. */
+  private asAlways(): Settings {
+    const seeThroughBacks = this.cameraPoses.length === 0;
+    return { ...defaultSettings, exposure: automaticExposure(this.solution), seeThroughBacks };
   }
 
   private obey(hash: string): void {

@@ -13,7 +13,7 @@ export const quantityTexts: Record<Quantity, QuantityText> = {
   irradiance: { name: 'irradiance', unit: 'W/m²' },
   density: { name: 'density of nodes', unit: '1/m²' },
   degree: { name: 'degree of lobes', unit: 'l_max' },
-  negative: { name: 'negative part', unit: 'of the flux' },
+  negative: { name: 'negative part', unit: 'of the flux, whole lobes' },
   hidden: { name: 'hidden nodes', unit: '', kinds: true },
   kind: { name: 'kind of gloss', unit: '', kinds: true },
 };

@@ -2,15 +2,17 @@
  * Lobes on rings about the normal, cut by spokes. On a ring a lobe is a Fourier series in the azimuth, so n spokes of
  * it cost n (2 lMax + 1) multiplications instead of n (lMax + 1)(lMax + 2) / 2: fast enough to follow a slider.
  */
-import { coefficientCount, coefficientIndex, zernikeRadial } from '../sh/zernike';
+import { coefficientCount, coefficientIndex, zernikeRadial } from './zernike';
 
 export class PolarGrid {
   /** radial[ring][m][j]: the scaled R_n^m, n = m + 2 j, at the ring's sine. */
   private readonly radial: number[][][];
   private readonly cosines: Float64Array;
 
-  /** `sines`: sin θ of each ring. The spokes are at azimuths 2 π (j + `offset`) / `spokes`. */
-  constructor(readonly lMax: number, readonly sines: readonly number[], readonly spokes: number, readonly offset = 0) {
+  /** `sines`: sin θ of each ring. The spokes, a multiple of 4, are at azimuths 2 π (j + `offset`) / `spokes`. */
+  constructor(
+    readonly lMax: number, readonly sines: readonly number[], readonly spokes: number, readonly offset: 0 | 0.5 = 0,
+  ) {
     this.radial = sines.map((rho) => Array.from({ length: lMax + 1 }, (_, m) => zernikeRadial(m, lMax, rho)));
     // cos m φ_j then sin m φ_j, spoke by spoke.
     const row = 2 * (lMax + 1);
@@ -45,13 +47,23 @@ export class PolarGrid {
         even[m] = c;
         odd[m] = s;
       }
-      for (let spoke = 0; spoke < this.spokes; ++spoke) {
-        let sum = 0;
-        const at = spoke * row;
-        for (let m = 0; m <= degree; ++m) {
-          sum += even[m] * this.cosines[at + m] + odd[m] * this.cosines[at + this.lMax + 1 + m];
+      // By symmetry a quarter of the spokes holds what all need, apart by parity: of the cosine in φ and -φ, of m in φ
+      // and φ + π.
+      const { spokes, offset, cosines } = this, first = ring * spokes;
+      for (let spoke = 0; spoke + offset <= spokes / 4; ++spoke) {
+        let c0 = 0, s0 = 0, c1 = 0, s1 = 0;
+        for (let m = 0, cos = spoke * row, sin = cos + this.lMax + 1; m <= degree; m += 2) {
+          c0 += even[m] * cosines[cos + m];
+          s0 += odd[m] * cosines[sin + m];
+          if (m === degree) break;
+          c1 += even[m + 1] * cosines[cos + m + 1];
+          s1 += odd[m + 1] * cosines[sin + m + 1];
         }
-        out[ring * this.spokes + spoke] = sum;
+        const back = spokes - spoke - 2 * offset, half = spokes / 2;
+        out[first + spoke] = c0 + c1 + s0 + s1;
+        out[first + (spoke + half)] = c0 - c1 + s0 - s1;
+        out[first + (back % spokes)] = c0 + c1 - s0 - s1;
+        out[first + ((back + half) % spokes)] = c0 - c1 - s0 + s1;
       }
     });
     return out;

@@ -1,0 +1,9 @@
+import { Box3, Vector3 } from 'three';
+import type { Solution } from './solution';
+
+/** Of all there is; where there is nothing, a box of two metres. */
+export function boundsOf({ patches, faces }: Solution): Box3 {
+  const box = new Box3(), part = new Box3();
+  for (const { positions } of [...patches, ...(faces ? [faces] : [])]) box.union(part.setFromArray(positions));
+  return box.isEmpty() ? new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1)) : box;
+}
