@@ -3,11 +3,11 @@ import { Vector3 } from 'three';
 import { inspectNode, toJson, type LobeJson } from '../inspect/inspection';
 import { Selection, type Seat } from '../inspect/selection';
 import type { Solution } from '../solution/solution';
-import { formatAddress, parseAddress } from '../stage/address';
+import { formatAddress, parseAddress, type Address } from '../stage/address';
 import { Controls } from '../stage/controls';
 import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
-import { defaultSettings, kMostDegree, type Quantity } from '../draw/settings';
+import { defaultSettings, type Quantity, type Settings } from '../draw/settings';
 import { Stage, type Pose } from '../stage/stage';
 import { boundsOf, poseOfAll, poseOfCamera, poseOfPlace } from '../stage/views';
 import { CamerasBar } from './cameras_bar';
@@ -38,6 +38,8 @@ export class Page {
   private readonly lMax: number;
   private readonly size: number;
   private readonly away = new AbortController();
+  /** The named camera that the eye is at. */
+  private camera: number | null = null;
   private pinned = false;
   private followed: object | null = null;
   private written = '';
@@ -47,7 +49,7 @@ export class Page {
     const canvas = region<HTMLCanvasElement>('canvas'), { signal } = this.away;
     this.stage = new Stage(canvas, solution);
     this.size = boundsOf(solution).getSize(new Vector3()).length();
-    this.lMax = Math.max(0, ...solution.patches.map((p) => p.lobes?.lMax ?? 0));
+    this.lMax = solution.patches.reduce((most, { lobes }) => Math.max(most, lobes?.lMax ?? 0), 0);
     this.cameraPoses = solution.cameras.map((camera) => poseOfCamera(solution, camera));
     this.selection = new Selection(this.stage, this.size);
     this.flight = new Flight(this.stage);
@@ -104,7 +106,7 @@ export class Page {
       if (location.hash !== this.written) this.obeyAll(location.hash);
     }, { signal });
 
-    this.stage.set({ exposure: automaticExposure(solution), degree: kMostDegree });
+    this.stage.set(this.asAlways());
     this.stage.setPose(this.cameraPoses[0] ?? poseOfAll(solution));
     this.obey(location.hash);
     this.follow();
@@ -120,11 +122,10 @@ export class Page {
   }
 
   /** Of any node, at the degree that is shown. Throws RangeError if there is none. */
-  figures(node: number): LobeJson & { lMax: number | null; normal: readonly number[]; negative: number } {
+  figures(node: number): LobeJson {
     const said = inspectNode(this.solution, node, this.stage.settings.degree);
     if (!said) throw new RangeError(`there is no node ${node}`);
-    const json = toJson(said);
-    return { ...json, lMax: json.l_max, normal: said.frame.z, negative: json.negative_flux_fraction };
+    return toJson(said);
   }
 
   /** Makes room for another solution: listeners go, and the canvas is a new one. */
@@ -150,7 +151,8 @@ export class Page {
     const now = this.stage.pose;
     const at = this.cameraPoses.findIndex((pose) =>
       pose.eye.distanceTo(now.eye) + pose.target.distanceTo(now.target) < 1e-4 * this.size && Math.abs(pose.fov - now.fov) < 0.01);
-    this.bar.setCamera(at < 0 ? null : at);
+    this.camera = at < 0 ? null : at;
+    this.bar.setCamera(this.camera);
     this.writeSoon();
   }
 
@@ -170,12 +172,15 @@ export class Page {
 
   /** Of an address that somebody typed or pasted: what it leaves out is as always. */
   private obeyAll(hash: string): void {
-    const { exposure } = this.stage.settings;
-    this.stage.set({ ...defaultSettings, exposure });
+    this.stage.set(this.asAlways());
     this.setPinned(false);
     this.selection.take(1, null);
     this.selection.take(0, null);
     this.obey(hash);
+  }
+
+  private asAlways(): Settings {
+    return { ...defaultSettings, exposure: automaticExposure(this.solution) };
   }
 
   private obey(hash: string): void {
@@ -185,7 +190,7 @@ export class Page {
     if (address.pose) this.stage.setPose(address.pose);
     else if (named >= 0) this.stage.setPose(this.cameraPoses[named]);
     this.stage.set(address.settings);
-    if (address.show) this.stage.set({ falseColour: scaleFor(this.stage, address.show.quantity, address.show) });
+    if (address.show) this.show(address.show.quantity, address.show);
     const known = (node: number | undefined) => node !== undefined && node < this.solution.nodeCount;
     if (known(address.node)) {
       this.selection.take(0, address.node!);
@@ -266,8 +271,10 @@ export class Page {
 
   // How it is shown.
 
-  private show(quantity: Quantity | null): void {
-    this.stage.set({ falseColour: quantity === null ? null : scaleFor(this.stage, quantity) });
+  private show(quantity: Quantity | null, scale?: Address['show']): void {
+    const why = quantity && this.stage.whyNot(quantity);
+    if (why) return say(why);
+    this.stage.set({ falseColour: quantity === null ? null : scaleFor(this.stage, quantity, scale) });
   }
 
   private addExposure(stops: number): void {
@@ -293,7 +300,7 @@ export class Page {
   }
 
   private async screenshot(): Promise<void> {
-    const camera = document.querySelector('#cameras [aria-pressed="true"]') ? this.cameraName() : null;
+    const camera = this.camera === null ? null : stem(this.solution.cameras[this.camera].name);
     const parts = [stem(this.solution.title), camera, this.selection.node === null ? null : `node${this.selection.node}`];
     const name = `${parts.filter((part) => part !== null && part !== '').join('_')}.png`;
     try {
@@ -302,12 +309,6 @@ export class Page {
     } catch (error) {
       say(`No picture: ${(error as Error).message}`);
     }
-  }
-
-  private cameraName(): string | null {
-    const index = [...document.querySelectorAll('#cameras .group:first-child button')]
-      .findIndex((button) => button.getAttribute('aria-pressed') === 'true');
-    return index < 0 ? null : stem(this.solution.cameras[index].name);
   }
 }
 
