@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { changeGlb } from './support/glb.mjs';
 import { bundle, solution, view } from './support/lobe.mjs';
-import { withScene } from './support/page.mjs';
+import { kSmall, withScene } from './support/page.mjs';
 import { serve } from './support/serve.mjs';
 
 const shown = (page) => page.evaluate(() => {
@@ -21,7 +21,7 @@ test('An address without an exposure has what suits the scene, whatever was befo
       await page.evaluate(() => (location.hash = '#node=3'));
       await page.waitForFunction(() => document.querySelector('#panel [data-figure="node"]')?.dataset.value === '3');
       assert.deepEqual(await shown(page), { exposure: suits, show: null });
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }
@@ -46,7 +46,7 @@ test('A pose that is very near to its target comes back after a reload', async (
       const back = await pose();
       assert.ok(Math.abs(back.apart / near.apart - 1) < 1e-3, `${back.apart} m from the target, ${near.apart} before`);
       back.ahead.forEach((v, k) => assert.ok(Math.abs(v - near.ahead[k]) < 1e-3, `looks ${back.ahead}, ${near.ahead} before`));
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }
@@ -61,7 +61,7 @@ test('A quantity that the file does not hold is not painted, and the page says w
     await withScene(`${site.address}#show=irradiance`, async (page) => {
       assert.equal((await shown(page)).show, null);
       assert.match(await page.locator('#status').innerText(), /albedo/);
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }

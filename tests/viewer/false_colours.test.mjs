@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { keep, solution, view } from './support/lobe.mjs';
-import { capture, withScene } from './support/page.mjs';
+import { capture, kSmall, withScene } from './support/page.mjs';
 import { difference } from './support/pictures.mjs';
 
 test('False colours change the picture, and the legend says what they mean', async () => {
@@ -29,7 +29,7 @@ test('False colours change the picture, and the legend says what they mean', asy
       await page.locator('#legend-high').press('Enter');
       assert.equal(await page.evaluate(() => window.lobe.stage.settings.falseColour.high), lower);
       assert.ok(Math.max(...difference(before, await capture(page, 240, 160)).byChannel) > 5, 'the scale changes nothing');
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }
@@ -56,7 +56,7 @@ test('Kinds of gloss are few colours, those of the legend', async () => {
       // The rest are lamps, backs and what lies between two.
       assert.ok(known > 0.8 * width * height, `${known} pixels have a colour of the legend`);
       assert.ok(seen.size >= 2, 'the room has diffuse and glossy walls');
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
 import { solution, view } from './support/lobe.mjs';
-import { ready, withPage, withScene } from './support/page.mjs';
+import { kSmall, ready, withPage, withScene } from './support/page.mjs';
 
 const title = (page) => page.locator('#title').innerText();
 const called = (page, name) => page.waitForFunction((n) => document.querySelector('#title').textContent === n, name);
@@ -26,7 +26,7 @@ test('Another solution opens by its file, and takes the place of the first', asy
       await page.locator('#file').setInputFiles({ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('hello') });
       await page.getByRole('button', { name: 'Back', exact: true }).click();
       assert.equal(await title(page), path.basename(other));
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }
@@ -50,11 +50,11 @@ test('A file that is opened while another is fetched stays', async () => {
       goOn();
       await ready(page, noticed);
       // Time to read it, if somebody did.
-      await page.waitForTimeout(1500);
+      await page.waitForTimeout(1000);
       assert.equal(await title(page), path.basename(second));
       assert.ok(await page.locator('#loading').isHidden());
       assert.deepEqual(noticed.errors, []);
-    });
+    }, kSmall);
   } finally {
     await site.close();
   }

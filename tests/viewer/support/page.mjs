@@ -4,6 +4,8 @@ import { execSync } from 'node:child_process';
 import { chromium } from './packages.mjs';
 
 const kViewport = { width: 960, height: 640 };
+/** For what is not about the picture: frames in software take long. */
+export const kSmall = { width: 480, height: 400 };
 /** On a busy machine a frame takes a second in software. */
 const kPatienceMs = 60000;
 
