@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { solution, view } from './support/lobe.mjs';
+import { keep, solution, view } from './support/lobe.mjs';
 import { capture, frame, withScene } from './support/page.mjs';
-import { difference, keep } from './support/pictures.mjs';
+import { difference } from './support/pictures.mjs';
 
 test('Moving the eye sends nothing to the graphics card, and the picture changes', async () => {
   const site = await view(solution('cornell_glossy'));

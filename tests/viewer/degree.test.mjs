@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { solution, view } from './support/lobe.mjs';
+import { keep, solution, view } from './support/lobe.mjs';
 import { capture, withScene } from './support/page.mjs';
-import { difference, keep, mean, srgb } from './support/pictures.mjs';
+import { difference, mean, srgb } from './support/pictures.mjs';
 
 const setDegree = (page, degree) => page.locator('#degree').evaluate((slider, value) => {
   slider.value = String(value);

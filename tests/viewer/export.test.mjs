@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
-import { bundle, lobe, solution, view, work } from './support/lobe.mjs';
+import { bundle, keep, lobe, solution, view, work } from './support/lobe.mjs';
 import { capture, withScene } from './support/page.mjs';
-import { difference, keep } from './support/pictures.mjs';
+import { difference } from './support/pictures.mjs';
 import { serve } from './support/serve.mjs';
 
 /** The page at an address, from view0. */

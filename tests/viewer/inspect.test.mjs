@@ -52,3 +52,61 @@ test('A click on the aluminium block selects the node that lobe inspect names, w
     await site.close();
   }
 });
+
+test('A hand that shakes within the slop still clicks, and a drag does not', async () => {
+  const site = await view(solution('cornell_glossy'));
+  try {
+    await withScene(`${site.address}#camera=view0`, async (page) => {
+      const rect = await page.locator('#canvas').boundingBox();
+      const [{ x, y }] = await pixelsOf(page, 'brushed aluminium');
+      const press = async (moves) => {
+        await page.mouse.move(rect.x + x, rect.y + y);
+        await page.mouse.down();
+        for (const [dx, dy] of moves) await page.mouse.move(rect.x + x + dx, rect.y + y + dy);
+        await page.mouse.up();
+      };
+      const node = page.locator('#panel [data-figure="node"]');
+      await press([[40, 0], [0, 0]]);
+      assert.equal(await node.count(), 0);
+      await press([[2, 0], [2, 1], [1, 2], [2, 2], [3, 1], [2, 0], [2, 1]]);
+      await node.waitFor({ state: 'visible', timeout: 10000 });
+      assert.equal(await node.count(), 1);
+    });
+  } finally {
+    await site.close();
+  }
+});
+
+test('A node that is compared with none is the first', async () => {
+  const site = await view(solution('cornell_glossy'));
+  try {
+    await withScene(site.address, async (page) => {
+      const seats = () => page.locator('#panel [data-figure="node"]').evaluateAll((all) =>
+        all.map(({ dataset }) => [dataset.seat, dataset.value]));
+      await page.evaluate(() => window.lobe.compare(1234));
+      assert.deepEqual(await seats(), [['first', '1234']]);
+      await page.waitForURL((url) => url.hash.split('&').includes('node=1234') && !url.hash.includes('compare'));
+      await page.evaluate(() => window.lobe.compare(2000));
+      assert.deepEqual(await seats(), [['first', '1234'], ['second', '2000']]);
+    });
+  } finally {
+    await site.close();
+  }
+});
+
+test('figures() says what lobe inspect says, under its names', async () => {
+  const file = solution('cornell_glossy'), site = await view(file);
+  // Only a solution knows these, and base and gloss are one here.
+  const elsewhere = ['direct_flux', 'l_max_base', 'l_max_gloss'];
+  try {
+    await withScene(site.address, async (page) => {
+      const expected = JSON.parse(lobe('inspect', file, '--node', '1234', '--json'));
+      const said = await page.evaluate(() => window.lobe.figures(1234));
+      for (const name of Object.keys(expected)) assert.equal(name in said, !elsewhere.includes(name), name);
+      assert.equal(said.l_max, Math.max(expected.l_max_base ?? 0, expected.l_max_gloss ?? 0));
+      for (const name of ['lMax', 'negative', 'normal']) assert.ok(!(name in said), `${name} has a name already`);
+    });
+  } finally {
+    await site.close();
+  }
+});

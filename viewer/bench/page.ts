@@ -1,5 +1,4 @@
-/** What measure.mjs drives: a stage without panels. */
-import * as THREE from 'three';
+/** What frames.mjs and compare.mjs drive (stage.mjs): a stage without panels. */
 import { Vector3 } from 'three';
 import { Picture } from '../src/draw/picture';
 import { loadSolution } from '../src/solution/load';
@@ -11,12 +10,14 @@ function poseOf({ matrix, fovY }: NamedCamera): Pose {
   return { eye, target: eye.clone().sub(back), up: new Vector3().setFromMatrixColumn(matrix, 1), fov: (fovY * 180) / Math.PI };
 }
 
-async function open(address: string) {
-  const solution = await loadSolution({ solution: address, title: address }, () => {});
+async function open() {
+  const solution = await loadSolution({ solution: 'solution.glb', title: 'solution.glb' }, () => {});
   const stage = new Stage(document.querySelector('canvas')!, solution);
   const look = (i: number) => stage.setPose(poseOf(solution.cameras[i]));
   look(0);
-  return { solution, stage, look };
+  Object.assign(bench, { solution, stage, look });
 }
 
-Object.assign(window, { open_: open, Picture, THREE });
+const bench = { Picture, ready: Promise.resolve() };
+bench.ready = open();
+Object.assign(window, { lobe: bench });

@@ -26,6 +26,13 @@ describe('An address', () => {
     expect(formatAddress(shown)).toBe('#eye=1,2.5,-3&target=0,1,0&fov=39.6&exposure=0');
   });
 
+  it.each([[1e4, 3], [2, 1e-5], [0, 1e-9], [5e6, 40]])('keeps poses %d m from the origin that look %d m far', (away, apart) => {
+    const eye = new Vector3(away, -0.37 * away, 0.71 * away), target = eye.clone().add(new Vector3(0.6, 0, -0.8).multiplyScalar(apart));
+    const back = parseAddress(formatAddress({ ...shown, pose: { ...pose, eye, target } })).pose!;
+    expect(back.eye.distanceTo(eye)).toBeLessThan(2e-5 * apart);
+    expect(back.target.distanceTo(target)).toBeLessThan(2e-5 * apart);
+  });
+
   it('understands a camera by its name', () => {
     expect(parseAddress('#camera=left%20door').camera).toBe('left door');
   });

@@ -31,9 +31,22 @@ describe('Moving', () => {
   });
 
   it('towards a place keeps it where it is on the canvas', () => {
-    const place = new Vector3(-0.4, 0.8, -2), before = onCanvas(pose, place), after = onCanvas(zoom(pose, place, 0.4), place);
+    const place = new Vector3(-0.4, 0.8, -2), before = onCanvas(pose, place);
+    const after = onCanvas(zoom(pose, place, 0.4, 1e-3), place);
     expect(after.x).toBeCloseTo(before.x, 8);
     expect(after.y).toBeCloseTo(before.y, 8);
+  });
+
+  it('towards a place ends before it, and leads back', () => {
+    let near = pose;
+    for (let i = 0; i < 200; ++i) near = zoom(near, pose.target, 1 / 1.15, 1e-3);
+    expect(near.eye.distanceTo(near.target)).toBeCloseTo(1e-3, 9);
+    expect(near.target.distanceTo(pose.target)).toBeLessThan(1e-9);
+    expect(forwardOf(near).distanceTo(forwardOf(pose))).toBeLessThan(1e-9);
+    expect(zoom(near, near.target, 2, 1e-3).eye.distanceTo(near.target)).toBeCloseTo(2e-3, 9);
+    // A target that is near already does not hold the eye back from what is farther.
+    const place = new Vector3(0, 0, -3);
+    expect(zoom(near, place, 0.5, 1e-3).eye.distanceTo(place)).toBeCloseTo(near.eye.distanceTo(place) / 2, 9);
   });
 
   it('sideways takes what is at the target along with the pointer', () => {

@@ -3,6 +3,7 @@ import { execFileSync, spawn } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import path from 'node:path';
 import { root } from './packages.mjs';
+import { writePng } from './pictures.mjs';
 
 const fromEnvironment = (name) => {
   if (!process.env[name]) throw new Error(`${name} is not set; see tests/viewer/run.sh`);
@@ -16,6 +17,13 @@ export const bundle = fromEnvironment('LOBE_VIEWER_BUNDLE');
 export const work = fromEnvironment('LOBE_VIEWER_WORK');
 mkdirSync(work, { recursive: true });
 
+/** Puts a picture into the working folder, to be looked at; its file. */
+export function keep(name, picture) {
+  const file = path.join(work, `${name}.png`);
+  writePng(file, picture);
+  return file;
+}
+
 /** Runs lobe to its end; standard output. */
 export const lobe = (...words) => execFileSync(program, words, { encoding: 'utf8', maxBuffer: 1 << 26 });
 
@@ -24,11 +32,11 @@ export const scene = (name) => path.join(root, 'tests/scenes', `${name}.glb`);
 const coarse = ['--edge', '0.8', '--links', '128', '--light-samples', '16', '--lmax', '12', '--refine-error', '20'];
 const solved = new Map();
 
-/** File of a solution of tests/scenes/NAME.glb. */
-export function solution(name) {
+/** File of a solution of tests/scenes/NAME.glb, or of another scene that is to have this name. */
+export function solution(name, from = scene(name)) {
   if (!solved.has(name)) {
     const file = path.join(work, `${name}.solution.glb`);
-    lobe('solve', scene(name), '-o', file, ...coarse, '--quiet');
+    lobe('solve', from, '-o', file, ...coarse, '--quiet');
     solved.set(name, file);
   }
   return solved.get(name);

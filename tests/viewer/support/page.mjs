@@ -1,10 +1,11 @@
 // Debian's Chromium, without a screen or a graphics card, and pages in it that notice whatever goes wrong.
 import assert from 'node:assert/strict';
 import { execSync } from 'node:child_process';
-import { after } from 'node:test';
 import { chromium } from './packages.mjs';
 
-export const kWidth = 960, kHeight = 640;
+const kViewport = { width: 960, height: 640 };
+/** For what is not about the picture: frames in software take long. */
+export const kSmall = { width: 480, height: 400 };
 /** On a busy machine a frame takes a second in software. */
 const kPatienceMs = 60000;
 
@@ -23,15 +24,16 @@ async function launch() {
   return chromium.launch({ executablePath, args });
 }
 
-after(() => browser?.close());
+/** At the end of all. */
+export const closeBrowser = () => browser?.close();
 
 /**
- * Opens an address in a fresh profile, and calls `look` with the page and with what was noticed: `errors` of console
+ * Opens an address in a fresh profile, `viewport` large, and calls `look` with the page and with what was noticed: `errors` of console
  * and scripts, `foreign` requests to elsewhere.
  */
-export async function withPage(address, look) {
+export async function withPage(address, look, viewport = kViewport) {
   browser ??= await launch();
-  const context = await browser.newContext({ viewport: { width: kWidth, height: kHeight } });
+  const context = await browser.newContext({ viewport });
   try {
     const page = await context.newPage();
     page.setDefaultTimeout(kPatienceMs);
@@ -64,12 +66,12 @@ export async function ready(page, noticed) {
 }
 
 /** As withPage, of a page that shows a scene, once it does; whatever is done with it must go without an error. */
-export const withScene = (address, look) => withPage(address, async (page, noticed) => {
+export const withScene = (address, look, viewport) => withPage(address, async (page, noticed) => {
   await ready(page, noticed);
   const seen = await look(page, noticed);
   assert.deepEqual(noticed.errors, []);
   return seen;
-});
+}, viewport);
 
 /** The scene from where the eye is, as {width, height, data}: RGBA, the top row first. */
 export async function capture(page, width, height) {

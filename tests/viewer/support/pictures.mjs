@@ -1,18 +1,13 @@
 import { readFileSync, writeFileSync } from 'node:fs';
-import path from 'node:path';
 import { PNG } from './packages.mjs';
-import { work } from './lobe.mjs';
 
 /** {width, height, data}, RGBA. */
 export const readPng = (file) => PNG.sync.read(readFileSync(file));
 
-/** Puts a picture into the working folder, to be looked at. */
-export function keep(name, { width, height, data }) {
+export function writePng(file, { width, height, data }) {
   const png = new PNG({ width, height });
   data.copy(png.data);
-  const file = path.join(work, `${name}.png`);
   writeFileSync(file, PNG.sync.write(png));
-  return file;
 }
 
 /** Of all pixels and colour channels, 0..255. */
@@ -44,20 +39,26 @@ export function nearJumps({ width, height, data }, step = 12, reach = 2) {
 }
 
 /**
- * Mean of |a - b| by channel, 0..255, over pixels that `excluded` (if given) does not mark; their share of all; and
- * the share of them where a channel is off by more than 16, which anybody sees.
+ * Mean of |a - b| by channel, 0..255, over pixels that `excluded` (if given) does not mark, and of b - a; their share of
+ * all; and the share of them where a channel is off by more than 16, which anybody sees.
  */
 export function difference(a, b, excluded = null) {
-  const sums = [0, 0, 0], pixels = a.width * a.height;
+  const sums = [0, 0, 0], signed = [0, 0, 0], pixels = a.width * a.height;
   let kept = 0, far = 0;
   for (let i = 0; i < pixels; ++i) {
     if (excluded?.[i]) continue;
     ++kept;
-    const off = [0, 1, 2].map((c) => Math.abs(a.data[4 * i + c] - b.data[4 * i + c]));
-    off.forEach((value, c) => (sums[c] += value));
-    if (Math.max(...off) > 16) ++far;
+    let most = 0;
+    for (let c = 0; c < 3; ++c) {
+      const off = b.data[4 * i + c] - a.data[4 * i + c];
+      signed[c] += off;
+      sums[c] += Math.abs(off);
+      most = Math.max(most, Math.abs(off));
+    }
+    if (most > 16) ++far;
   }
-  return { byChannel: sums.map((s) => s / kept), share: kept / pixels, far: far / kept };
+  const mean = (values) => values.map((s) => s / kept);
+  return { byChannel: mean(sums), signed: mean(signed), share: kept / pixels, far: far / kept };
 }
 
 /** What a display shows of linear light, 0..255. */

@@ -70,20 +70,22 @@ export class Selection {
     return this.equal ? this.taken[seat]?.reach || 1 : 1;
   }
 
-  /** Says whether there is such a node. Null: none. */
+  /** Says whether there is such a node. Null: none. Without a first node there is nothing to compare with, and who
+   *  comes is first. */
   take(seat: Seat, what: Pick | number | null): boolean {
     if (what === null) {
       this.taken[seat] = null;
       // Who is left alone is first.
       if (seat === 0) [this.taken[0], this.taken[1]] = [this.taken[1], null];
     } else {
+      if (!this.taken[0]) seat = 0;
       const { solution } = this.stage;
       const node = typeof what === 'number' ? what : what.node;
       const whole = inspectNode(solution, node, Infinity);
       if (!whole) return false;
       const element = typeof what === 'number' ? elementOf(solution, node) : what.nodes;
       this.taken[seat] = { node, element, reach: whole.whole ? measureLobe(whole.whole).peak.luminance : 0 };
-      if (seat === 0 || !this.taken[0]) {
+      if (seat === 0) {
         const distance = this.stage.camera.position.distanceTo(new Vector3(...whole.position));
         this.size = Math.min(kLength * this.diagonal, kLengthOfDistance * distance);
       }

@@ -73,6 +73,8 @@ function outline(values: readonly number[], unit: number, at: Place, begin = 0, 
 
 function grid(at: Place, theme: SlicesTheme): string {
   const parts: string[] = [];
+  const label = (x: number, y: number, words: string, anchor: string) =>
+    `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor}" fill="${theme.faint}">${words}</text>`;
   for (const k of [0.5, 1]) {
     const r = at.radius * k;
     parts.push(`<path d="M${p(at.x - r, at.y)} A${r} ${r} 0 0 1 ${p(at.x + r, at.y)}" fill="none" stroke="${theme.grid}"/>`);
@@ -82,11 +84,9 @@ function grid(at: Place, theme: SlicesTheme): string {
     parts.push(`<path d="M${p(at.x, at.y)} L${p(at.x + at.radius * x, at.y + at.radius * y)}" stroke="${theme.grid}"/>`);
     if (Math.abs(theta) === 90) continue;
     const anchor = theta === 0 ? 'middle' : theta > 0 ? 'start' : 'end', gap = at.radius + 4;
-    parts.push(`<text x="${(at.x + gap * x).toFixed(1)}" y="${(at.y + gap * y + (theta === 0 ? 0 : 2)).toFixed(1)}" text-anchor="${anchor}" fill="${theme.faint}">${Math.abs(theta)}°</text>`);
+    parts.push(label(at.x + gap * x, at.y + gap * y + (theta === 0 ? 0 : 2), `${Math.abs(theta)}°`, anchor));
   }
-  for (const k of [0, 0.5, 1]) {
-    parts.push(`<text x="${at.x + at.radius * k}" y="${at.y + 13}" text-anchor="middle" fill="${theme.faint}">${short(at.full * k)}</text>`);
-  }
+  for (const k of [0, 0.5, 1]) parts.push(label(at.x + at.radius * k, at.y + 13, short(at.full * k), 'middle'));
   return parts.join('');
 }
 
@@ -94,7 +94,8 @@ function curve(c: Curve, at: Place, theme: SlicesTheme, filled: boolean): string
   const { values } = c.slice, unit = c.unit ?? 1, colour = theme.lobes[c.colour];
   const parts: string[] = [];
   if (c.ghost) {
-    parts.push(`<path d="M${outline(c.ghost.values, unit, at).join('L')}" fill="none" stroke="${theme.faint}" stroke-dasharray="2 2.5"/>`);
+    const whole = outline(c.ghost.values, unit, at).join('L');
+    parts.push(`<path d="M${whole}" fill="none" stroke="${theme.faint}" stroke-dasharray="2 2.5"/>`);
   }
   const centre = p(at.x, at.y);
   for (const { negative, begin, end } of runs(values)) {
@@ -106,7 +107,9 @@ function curve(c: Curve, at: Place, theme: SlicesTheme, filled: boolean): string
     // On the horizon the outline ends; the spoke back to the centre is not part of the curve.
     if (begin > 0) points.unshift(centre);
     if (end < values.length) points.push(centre);
-    parts.push(`<path d="M${points.join('L')}" fill="none" stroke="${stroke}" stroke-width="1.6" stroke-linejoin="round"${negative ? ' stroke-dasharray="3 2"' : ''}/>`);
+    const dashes = negative ? ' stroke-dasharray="3 2"' : '';
+    parts.push(
+      `<path d="M${points.join('L')}" fill="none" stroke="${stroke}" stroke-width="1.6" stroke-linejoin="round"${dashes}/>`);
   }
   return parts.join('');
 }
@@ -140,7 +143,8 @@ export function slicesSvg(
   const text = (x: number, y: number, size: number, colour: string, words: string) =>
     `<text x="${x}" y="${y}" font-size="${size}" font-family="${theme.font}" fill="${colour}">${escape(words)}</text>`;
   return (
-    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" role="img" aria-label="${escape(options.label ?? options.title ?? '')}">` +
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" role="img" ` +
+    `aria-label="${escape(options.label ?? options.title ?? '')}">` +
     (options.title ? text(16, 28, 15, theme.ink, options.title) : '') +
     sliceSvg(along, 'through the peak', theme, one, full, 0, top) +
     sliceSvg(across, 'across it', theme, one, full, one, top) +

@@ -31,18 +31,23 @@ export function spectrumSvg(spectra: readonly Spectrum[], degree: number, theme:
     energy.forEach((value, n) => {
       const h = plot.height * level(value / all);
       if (h <= 0) return;
-      const x = left + step * (n + 0.5) + bar * (which - spectra.length / 2);
+      const x = left + step * (n + 0.5) + bar * (which - spectra.length / 2), y = top + plot.height - h;
+      const wide = Math.max(0.8, bar - (spectra.length > 1 ? 0.5 : 0));
       parts.push(
-        `<rect x="${x.toFixed(2)}" y="${(top + plot.height - h).toFixed(2)}" width="${Math.max(0.8, bar - (spectra.length > 1 ? 0.5 : 0)).toFixed(2)}" height="${h.toFixed(2)}" rx="1" fill="${theme.lobes[colour]}" fill-opacity="${n > degree ? 0.22 : 1}"><title>degree ${n}: ${((100 * value) / all).toPrecision(3)} %</title></rect>`);
+        `<rect x="${x.toFixed(2)}" y="${y.toFixed(2)}" width="${wide.toFixed(2)}" height="${h.toFixed(2)}" rx="1" ` +
+        `fill="${theme.lobes[colour]}" fill-opacity="${n > degree ? 0.22 : 1}">` +
+        `<title>degree ${n}: ${((100 * value) / all).toPrecision(3)} %</title></rect>`);
     });
   });
   const every = Math.max(1, Math.ceil((lMax + 1) / (plot.width / 22)));
   const stride = [1, 2, 5, 10, 20].find((s) => s >= every) ?? 20;
   for (let n = 0; n <= lMax; n += stride) {
-    parts.push(`<text x="${(left + step * (n + 0.5)).toFixed(1)}" y="${height - 4}" text-anchor="middle" fill="${theme.faint}">${n}</text>`);
+    const x = left + step * (n + 0.5);
+    parts.push(`<text x="${x.toFixed(1)}" y="${height - 4}" text-anchor="middle" fill="${theme.faint}">${n}</text>`);
   }
   return (
-    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" font-size="9.5" font-family="${theme.font}" role="img" aria-label="Share of the lobe's energy by degree, logarithmic">` +
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" font-size="9.5" font-family="${theme.font}" ` +
+    `role="img" aria-label="Share of the lobe's energy by degree, logarithmic">` +
     parts.join('') + '</svg>'
   );
 }

@@ -89,9 +89,14 @@ export function parseAddress(hash: string): Address {
   return address;
 }
 
-/** Six digits: a tenth of a millimetre in a hall. */
 const digits = (value: number) => String(Number(value.toPrecision(6)));
-const list = (v: Vector3) => [v.x, v.y, v.z].map((x) => digits(Math.abs(x) < 1e-9 ? 0 : x)).join(',');
+
+/** Two places, or a direction from the origin: to a hundred-thousandth of what is between, wherever they are. */
+function places(...ends: Vector3[]): string[] {
+  const apart = ends.length > 1 ? ends[0].distanceTo(ends[1]) : ends[0].length();
+  const decimals = Math.min(20, Math.max(0, Math.ceil(5 - Math.log10(apart))));
+  return ends.map((v) => v.toArray().map((x) => String(Number(x.toFixed(decimals)) + 0)).join(','));
+}
 
 export interface Shown {
   pose: Pose;
@@ -103,8 +108,9 @@ export interface Shown {
 }
 
 export function formatAddress({ pose, settings, node, compare, lMax }: Shown): string {
-  const parts = [`eye=${list(pose.eye)}`, `target=${list(pose.target)}`];
-  if (pose.up.distanceTo(new Vector3(0, 1, 0)) > 1e-6) parts.push(`up=${list(pose.up)}`);
+  const [eye, target] = places(pose.eye, pose.target);
+  const parts = [`eye=${eye}`, `target=${target}`];
+  if (pose.up.distanceTo(new Vector3(0, 1, 0)) > 1e-6) parts.push(`up=${places(pose.up)[0]}`);
   parts.push(`fov=${digits(pose.fov)}`);
   if (node !== null) parts.push(`node=${node}`);
   if (compare !== null) parts.push(`compare=${compare}`);

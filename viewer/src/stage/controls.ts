@@ -19,6 +19,8 @@ const kLookPerHeight = Math.PI / 2;
 const kTurnRate = 1.2;
 /** The least that a key does, however short it is pressed; seconds. */
 const kTap = 0.05;
+/** How near the wheel and keys bring the eye to a place, over the scene's diagonal: nearer, single precision shows. */
+const kNearest = 1e-4;
 /** Ways that a picked place serves for the wheel; milliseconds. Picking is linear in the elements. */
 const kWheelPause = 500;
 
@@ -51,7 +53,8 @@ export class Controls {
   private shifted = false;
   private lastStep = 0;
   private frame = 0;
-  private drag: { shift: boolean; button: number; moved: number; fingers: number } | null = null;
+  /** `moved`: how far from where it was pressed, at most; CSS pixels. */
+  private drag: { from: Finger; shift: boolean; button: number; moved: number; fingers: number } | null = null;
   private wheelPlace: { x: number; y: number; time: number; place: Vector3 } | null = null;
 
   constructor(private readonly stage: Stage, private readonly flight: Flight, private readonly options: ControlsOptions) {
@@ -77,6 +80,10 @@ export class Controls {
     return this.metresASecond;
   }
 
+  private get nearest(): number {
+    return kNearest * this.options.size;
+  }
+
   setMode(mode: Mode): void {
     if (mode === this.current) return;
     this.current = mode;
@@ -97,7 +104,8 @@ export class Controls {
     this.shifted = event.shiftKey;
     if (isZoom(event.key)) {
       this.flight.stop();
-      this.stage.setPose(zoom(this.stage.pose, this.stage.target, event.key === '-' || event.key === '_' ? 1.15 : 1 / 1.15));
+      const factor = event.key === '-' || event.key === '_' ? 1.15 : 1 / 1.15;
+      this.stage.setPose(zoom(this.stage.pose, this.stage.target, factor, this.nearest));
       return true;
     }
     if (!this.held.has(event.code)) {
@@ -166,9 +174,10 @@ export class Controls {
   private down(event: PointerEvent): void {
     this.flight.stop();
     this.stage.canvas.setPointerCapture(event.pointerId);
-    this.fingers.set(event.pointerId, this.at(event));
+    const here = this.at(event);
+    this.fingers.set(event.pointerId, here);
     if (this.fingers.size === 1) {
-      this.drag = { shift: event.shiftKey, button: event.button, moved: 0, fingers: 1 };
+      this.drag = { from: here, shift: event.shiftKey, button: event.button, moved: 0, fingers: 1 };
     } else if (this.drag) {
       this.drag.fingers = this.fingers.size;
     }
@@ -178,7 +187,7 @@ export class Controls {
     const before = this.fingers.get(event.pointerId);
     if (!before || !this.drag) return;
     const here = this.at(event), dx = here.x - before.x, dy = here.y - before.y;
-    this.drag.moved += Math.hypot(dx, dy);
+    this.drag.moved = Math.max(this.drag.moved, Math.hypot(here.x - this.drag.from.x, here.y - this.drag.from.y));
     const wasClick = this.drag.moved <= kSlop && this.drag.fingers === 1;
     if (wasClick) return;
     const height = this.stage.canvas.clientHeight;
@@ -188,7 +197,8 @@ export class Controls {
       // Each finger carries half of the shift, and all of its share of the pinch.
       pose = pan(pose, dx / 2, dy / 2, height);
       const apart = (f: Finger) => Math.max(1, Math.hypot(f.x - other.x, f.y - other.y));
-      pose = zoom(pose, this.place((here.x + other.x) / 2, (here.y + other.y) / 2), apart(before) / apart(here));
+      const place = this.place((here.x + other.x) / 2, (here.y + other.y) / 2);
+      pose = zoom(pose, place, apart(before) / apart(here), this.nearest);
     } else if (this.drag.shift || this.drag.button !== 0) {
       pose = pan(pose, dx, dy, height);
     } else if (this.mode === 'walk') {
@@ -223,7 +233,8 @@ export class Controls {
     }
     const { x, y } = this.at(event);
     // A pinch on a touchpad comes as a wheel with Ctrl, in small steps.
-    this.stage.setPose(zoom(this.stage.pose, this.place(x, y), Math.exp(amount * (event.ctrlKey ? 0.01 : 0.0015))));
+    const factor = Math.exp(amount * (event.ctrlKey ? 0.01 : 0.0015));
+    this.stage.setPose(zoom(this.stage.pose, this.place(x, y), factor, this.nearest));
   }
 
   /** What is seen at a place of the canvas; if nothing is, the place there at the target's distance. */

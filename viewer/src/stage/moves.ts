@@ -48,10 +48,14 @@ export function pan(pose: Pose, dx: number, dy: number, height: number): Pose {
   return shift(pose, right.multiplyScalar(-dx * metres).addScaledVector(up, dy * metres));
 }
 
-/** Everything `factor` as far from `towards`, which stays where it is on the canvas. */
-export function zoom(pose: Pose, towards: Vector3, factor: number): Pose {
-  const scaled = (v: Vector3) => v.clone().sub(towards).multiplyScalar(factor).add(towards);
-  return { ...pose, eye: scaled(pose.eye), target: scaled(pose.target) };
+/** Everything `factor` as far from `towards`, which stays where it is on the canvas. The eye comes no nearer than
+ *  `nearest` metres to that, nor to its target. */
+export function zoom(pose: Pose, towards: Vector3, factor: number, nearest: number): Pose {
+  const apart = pose.eye.distanceTo(towards);
+  const by = factor < 1 ? Math.max(factor, Math.min(1, nearest / apart)) : factor;
+  const eye = pose.eye.clone().sub(towards).multiplyScalar(by).add(towards);
+  const distance = Math.max(nearest, by * pose.eye.distanceTo(pose.target));
+  return { ...pose, eye, target: eye.clone().addScaledVector(forwardOf(pose), distance) };
 }
 
 /** A step of (right, up, ahead) metres; ahead and right are level, as one walks. */

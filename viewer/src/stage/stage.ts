@@ -109,11 +109,7 @@ export class Stage {
     }
   }
 
-  /** Whether a quantity can be shown in false colours; `whyNot` says in a sentence what it lacks. */
-  available(quantity: Quantity): boolean {
-    return this.whyNot(quantity) === null;
-  }
-
+  /** What a quantity lacks to be shown in false colours, in a sentence; null: nothing. */
   whyNot(quantity: Quantity): string | null {
     return whyNot(this.solution, quantity);
   }

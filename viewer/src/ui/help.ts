@@ -1,10 +1,12 @@
 import type { KeyGroup } from '../stage/keys';
 import { h } from './dom';
 
-/** Keys drawn as keys; words between them stay words. */
+/** Keys drawn as keys; what is between them says whether they are pressed together. */
 function keys(shown: string): (HTMLElement | string)[] {
-  return shown.split(/( \/ | \+ | )/).filter((part) => part !== '').map((part) =>
-    /^[ /+]+$/.test(part) && part.trim() !== part ? part.replace(' / ', ' ').replace(' + ', ' ') : h('kbd', {}, part));
+  return shown.split(/( \/ | \+ | )/).map((part) => {
+    if (part === ' / ' || part === ' ') return ' ';
+    return part === ' + ' ? h('span', { className: 'with' }, '+') : h('kbd', {}, part);
+  });
 }
 
 /** The dialog that lists the keys. */

@@ -5,7 +5,7 @@ import type { Selection, Seat } from '../inspect/selection';
 import type { Stage } from '../stage/stage';
 import { h } from './dom';
 import { saveJson, saveSvg } from './export';
-import { metres, number, percent, vector } from './format';
+import { number, percent, vector } from './format';
 import { slicesFigure, spectrumFigure } from './plots';
 import { slider, type Slider } from './slider';
 
@@ -52,12 +52,17 @@ interface Row {
 
 function rgb(values: readonly number[], figure?: string): HTMLElement {
   const colours = ['#ff7a6b', '#6fd07f', '#7aa5ff'], names = ['red', 'green', 'blue'];
-  return h('span', { className: 'rgb', 'data-figure': figure, 'data-value': figure && JSON.stringify(values) }, ...values.map((v, c) =>
-    h('span', { style: `--c: ${colours[c]}`, title: names[c] }, number(v))));
+  return h('span', { className: 'rgb', 'data-figure': figure, 'data-value': figure && JSON.stringify(values) },
+    ...values.map((v, c) => h('span', { style: `--c: ${colours[c]}`, title: names[c] }, number(v))));
 }
 
+const triple = (v: readonly number[]) => h('span', { className: 'triple' }, vector(v, kBetween));
+
 const rows: readonly Row[] = [
-  { name: 'Flux', unit: 'W/m²', figure: 'flux', of: (i) => i.figures && { raw: i.figures.flux, words: rgb(i.figures.flux) } },
+  {
+    name: 'Flux', unit: 'W/m²', figure: 'flux',
+    of: (i) => i.figures && { raw: i.figures.flux, words: rgb(i.figures.flux) },
+  },
   {
     name: 'Peak', unit: 'W/(m² sr)', figure: 'peak',
     of: (i) => i.figures && {
@@ -73,14 +78,22 @@ const rows: readonly Row[] = [
       return { raw: world, words: `${peak.thetaDegrees.toFixed(1)}°, ${peak.phiDegrees.toFixed(1)}°`, small: vector(world, kBetween) };
     },
   },
-  { name: 'Negative', unit: 'share of the flux', figure: 'negative', of: (i) => i.figures && { raw: i.figures.negative, words: percent(i.figures.negative) } },
   {
-    name: 'Degree', figure: 'lMax', unit: 'shown, of l_max',
-    of: (i) => i.whole && i.shown && { raw: i.whole.lMax, words: i.shown.lMax < i.whole.lMax ? `${i.shown.lMax} of ${i.whole.lMax}` : String(i.whole.lMax) },
+    name: 'Negative', unit: 'share of the flux', figure: 'negative',
+    of: (i) => i.figures && { raw: i.figures.negative, words: percent(i.figures.negative) },
   },
-  { name: 'Cut error', unit: 'relative, L2', figure: 'error', of: (i) => i.whole && { raw: i.error, words: percent(i.error) } },
-  { name: 'Position', unit: 'm', figure: 'position', of: (i) => ({ raw: i.position, words: h('span', { className: 'triple' }, i.position.map(metres).join(kBetween)) }) },
-  { name: 'Normal', figure: 'normal', of: (i) => ({ raw: i.frame.z, words: h('span', { className: 'triple' }, vector(i.frame.z, kBetween)) }) },
+  {
+    name: 'Degree', unit: 'shown, of l_max', figure: 'lMax',
+    of: ({ whole, shown }) => whole && shown && {
+      raw: whole.lMax, words: shown.lMax < whole.lMax ? `${shown.lMax} of ${whole.lMax}` : String(whole.lMax),
+    },
+  },
+  {
+    name: 'Cut error', unit: 'relative, L2', figure: 'error',
+    of: (i) => i.whole && { raw: i.error, words: percent(i.error) },
+  },
+  { name: 'Position', unit: 'm', figure: 'position', of: (i) => ({ raw: i.position, words: triple(i.position) }) },
+  { name: 'Normal', figure: 'normal', of: (i) => ({ raw: i.frame.z, words: triple(i.frame.z) }) },
 ];
 
 const seatName = ['first', 'second'] as const;
@@ -113,6 +126,7 @@ export class Inspector {
   private readonly notes = h('div');
   private readonly body = h('div');
   private readonly compare: HTMLButtonElement;
+  private readonly saves: HTMLButtonElement[];
   private readonly actions: HTMLElement;
   private readonly equal: HTMLInputElement;
   private readonly equalRow: HTMLElement;
@@ -129,14 +143,17 @@ export class Inspector {
     this.degree.input.disabled = lMax === 0;
     this.degree.input.title = 'Lobes are cut at this degree; their flux is kept';
     this.seats = [this.seat(0), this.seat(1)];
-    this.compare = h('button', { type: 'button', onclick: () => does.pin(), title: 'Keep this node, and choose another (C)' }, 'Compare');
+    const button = (words: string, title: string, onclick: () => void, id?: string) =>
+      h('button', { type: 'button', id, title, onclick }, words);
+    this.compare = button('Compare', 'Keep this node, and choose another (C)', () => does.pin());
+    this.saves = [
+      button('JSON', 'Figures and coefficients of the lobe', () => saveJson(stage.solution, selection), 'save-json'),
+      button('SVG', 'The slices as a drawing', () => saveSvg(stage.solution, selection), 'save-svg'),
+    ];
     this.equal = h('input', { type: 'checkbox', onchange: () => selection.setEqualPeaks(this.equal.checked) });
     this.equalRow = h('label', { className: 'check' }, this.equal, 'Draw both by their own peak');
     this.actions = h('div', { className: 'actions' },
-      this.compare,
-      h('button', { type: 'button', onclick: () => does.focus(), title: 'Go there (F)' }, 'Focus'),
-      h('button', { type: 'button', id: 'save-json', onclick: () => saveJson(stage.solution, selection), title: 'Figures and coefficients of the lobe' }, 'JSON'),
-      h('button', { type: 'button', id: 'save-svg', onclick: () => saveSvg(stage.solution, selection), title: 'The slices as a drawing' }, 'SVG'));
+      this.compare, button('Focus', 'Go there (F)', () => does.focus()), ...this.saves);
     this.element = h('section', { 'aria-labelledby': 'lobes-title' },
       h('h2', { id: 'lobes-title' }, 'Lobes'), this.degree.element, this.hint,
       h('div', { className: 'who' }, ...this.seats), this.notes, this.actions, this.equalRow, this.body);
@@ -183,8 +200,10 @@ export class Inspector {
     this.body.replaceChildren();
     if (said.some((i) => i.whole)) this.body.append(slicesFigure(this.selection));
     if (said.length > 0) this.body.append(table(said));
-    if (said.some((i) => (i.whole?.lMax ?? 0) > 0)) this.body.append(spectrumFigure(this.selection, this.stage.settings.degree));
-    for (const id of ['#save-json', '#save-svg']) this.actions.querySelector<HTMLButtonElement>(id)!.disabled = !said.some((i) => i.whole);
+    if (said.some((i) => (i.whole?.lMax ?? 0) > 0)) {
+      this.body.append(spectrumFigure(this.selection, this.stage.settings.degree));
+    }
+    for (const save of this.saves) save.disabled = !said.some((i) => i.whole);
   }
 
   private fill(seat: Seat, i: Inspection | null): void {
@@ -201,7 +220,10 @@ export class Inspector {
         h('strong', {}, figure('node', i.node, `Node ${i.node}`)),
         h('small', {}, figure('surface', i.surface, i.surface), i.side === 'back' ? ', its back' : '', ' · ',
           figure('material', i.material, i.material), ' · ', figure('kind', i.kind, kinds[i.kind]))),
-      h('button', { type: 'button', className: 'quiet', 'aria-label': `Leave node ${i.node}`, title: 'Leave it (Esc)', onclick: () => this.does.clear(seat) }, '✕'));
+      h('button', {
+        type: 'button', className: 'quiet', 'aria-label': `Leave node ${i.node}`, title: 'Leave it (Esc)',
+        onclick: () => this.does.clear(seat),
+      }, '✕'));
     if (hadFocus) element.querySelector('button')!.focus();
   }
 }

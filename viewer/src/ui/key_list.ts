@@ -70,7 +70,7 @@ export function keyGroups(does: KeyActions): KeyGroup[] {
       keys: [
         // While walking E goes up, and Controls has taken it before it gets here.
         key('E / ]', 'A quarter of a stop brighter', ['e', ']'], () => does.exposure(kStops)),
-        key('Shift + E / [', 'A quarter of a stop darker', ['E', '['], () => does.exposure(-kStops)),
+        key('[ / Shift + E', 'A quarter of a stop darker', ['E', '['], () => does.exposure(-kStops)),
         key('X', 'Edges of the elements', letter('x'), does.wireframe),
         key('B', 'See through the backs of walls', letter('b'), does.backs),
         key('P', 'Show or hide the panel', letter('p'), does.panel),

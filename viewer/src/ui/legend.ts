@@ -43,13 +43,16 @@ export class Legend {
   private readonly kinds = h('ul', { className: 'kinds' });
 
   constructor(private readonly element: HTMLElement, private readonly stage: Stage) {
-    this.logarithmic = h('input', { type: 'checkbox', id: 'legend-log', onchange: () => this.apply({ logarithmic: this.logarithmic.checked }) });
+    this.logarithmic = h('input', {
+      type: 'checkbox', id: 'legend-log', onchange: () => this.apply({ logarithmic: this.logarithmic.checked }),
+    });
     this.scale = h('div', {},
       h('div', { className: 'scale', style: `background: ${gradient}`, role: 'img', 'aria-label': 'Dark blue is low, pale yellow high' }),
       this.marks,
       h('div', { className: 'ends' }, this.low, '–', this.high,
         h('label', { className: 'check', style: 'margin: 0' }, this.logarithmic, 'logarithmic'),
-        h('button', { type: 'button', className: 'quiet', id: 'legend-auto', onclick: () => this.automatic(), title: 'Ends that suit the scene' }, 'automatic')));
+        h('button', { type: 'button', id: 'legend-auto', onclick: () => this.automatic(), title: 'Ends that suit the scene' },
+          'automatic')));
     element.replaceChildren(this.title, this.unit, this.scale, this.kinds);
     element.hidden = true;
   }
@@ -80,7 +83,7 @@ export class Legend {
     const place = (v: number) =>
       logarithmic ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low);
     this.marks.replaceChildren(...ticks(low, high, logarithmic).map((v) =>
-      h('span', { style: `left: ${(100 * place(v)).toFixed(2)}%` }, plain(v))));
+      h('span', { style: `--at: ${(100 * place(v)).toFixed(2)}%` }, plain(v))));
   }
 
   private end(label: string, id: string): HTMLInputElement {

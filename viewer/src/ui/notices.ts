@@ -42,6 +42,8 @@ export function hideProblem(): void {
 }
 
 let fading = 0;
+/** Milliseconds that words stay: a while, and what reading takes. */
+const kGlance = 1600, kALetter = 50;
 
 /** Says what a key or button did; for eyes and for screen readers. */
 export function say(words: string): void {
@@ -49,5 +51,5 @@ export function say(words: string): void {
   element.textContent = words;
   element.classList.add('said');
   clearTimeout(fading);
-  fading = window.setTimeout(() => element.classList.remove('said'), 1600);
+  fading = window.setTimeout(() => element.classList.remove('said'), Math.max(kGlance, kALetter * words.length));
 }

@@ -4,7 +4,7 @@ import { inspectNode, toJson, type LobeJson } from '../inspect/inspection';
 import { Selection, type Seat } from '../inspect/selection';
 import { boundsOf } from '../solution/bounds';
 import type { Solution } from '../solution/solution';
-import { formatAddress, parseAddress } from '../stage/address';
+import { formatAddress, parseAddress, type Address } from '../stage/address';
 import { Controls } from '../stage/controls';
 import { Flight } from '../stage/flight';
 import { findKey, isOnCanvas, isTaken } from '../stage/keys';
@@ -39,6 +39,8 @@ export class Page {
   private readonly lMax: number;
   private readonly size: number;
   private readonly away = new AbortController();
+  /** The named camera that the eye is at. */
+  private camera: number | null = null;
   private pinned = false;
   private followed: object | null = null;
   private written = '';
@@ -48,7 +50,7 @@ export class Page {
     const canvas = region<HTMLCanvasElement>('canvas'), { signal } = this.away;
     this.stage = new Stage(canvas, solution);
     this.size = boundsOf(solution).getSize(new Vector3()).length();
-    this.lMax = Math.max(0, ...solution.patches.map((p) => p.lobes?.lMax ?? 0));
+    this.lMax = solution.patches.reduce((most, { lobes }) => Math.max(most, lobes?.lMax ?? 0), 0);
     this.cameraPoses = solution.cameras.map((camera) => poseOfCamera(solution, camera));
     this.selection = new Selection(this.stage, this.size);
     this.flight = new Flight(this.stage);
@@ -121,11 +123,10 @@ export class Page {
   }
 
   /** Of any node, at the degree that is shown. Throws RangeError if there is none. */
-  figures(node: number): LobeJson & { lMax: number | null; normal: readonly number[]; negative: number } {
+  figures(node: number): LobeJson {
     const said = inspectNode(this.solution, node, this.stage.settings.degree);
     if (!said) throw new RangeError(`there is no node ${node}`);
-    const json = toJson(said);
-    return { ...json, lMax: json.l_max, normal: said.frame.z, negative: json.negative_flux_fraction };
+    return toJson(said);
   }
 
   /** Makes room for another solution: listeners go, and the canvas is a new one. */
@@ -152,7 +153,8 @@ export class Page {
     const now = this.stage.pose;
     const at = this.cameraPoses.findIndex((pose) =>
       pose.eye.distanceTo(now.eye) + pose.target.distanceTo(now.target) < 1e-4 * this.size && Math.abs(pose.fov - now.fov) < 0.01);
-    this.bar.setCamera(at < 0 ? null : at);
+    this.camera = at < 0 ? null : at;
+    this.bar.setCamera(this.camera);
     this.writeSoon();
   }
 
@@ -192,7 +194,7 @@ export class Page {
     if (address.pose) this.stage.setPose(address.pose);
     else if (named >= 0) this.stage.setPose(this.cameraPoses[named]);
     this.stage.set(address.settings);
-    if (address.show) this.stage.set({ falseColour: scaleFor(this.stage, address.show.quantity, address.show) });
+    if (address.show) this.show(address.show.quantity, address.show);
     const known = (node: number | undefined) => node !== undefined && node < this.solution.nodeCount;
     if (known(address.node)) {
       this.selection.take(0, address.node!);
@@ -273,8 +275,10 @@ export class Page {
 
   // How it is shown.
 
-  private show(quantity: Quantity | null): void {
-    this.stage.set({ falseColour: quantity === null ? null : scaleFor(this.stage, quantity) });
+  private show(quantity: Quantity | null, scale?: Address['show']): void {
+    const why = quantity && this.stage.whyNot(quantity);
+    if (why) return say(why);
+    this.stage.set({ falseColour: quantity === null ? null : scaleFor(this.stage, quantity, scale) });
   }
 
   private addExposure(stops: number): void {
@@ -300,7 +304,7 @@ export class Page {
   }
 
   private async screenshot(): Promise<void> {
-    const camera = document.querySelector('#cameras [aria-pressed="true"]') ? this.cameraName() : null;
+    const camera = this.camera === null ? null : stem(this.solution.cameras[this.camera].name);
     const parts = [stem(this.solution.title), camera, this.selection.node === null ? null : `node${this.selection.node}`];
     const name = `${parts.filter((part) => part !== null && part !== '').join('_')}.png`;
     try {
@@ -309,12 +313,6 @@ export class Page {
     } catch (error) {
       say(`No picture: ${(error as Error).message}`);
     }
-  }
-
-  private cameraName(): string | null {
-    const index = [...document.querySelectorAll('#cameras .group:first-child button')]
-      .findIndex((button) => button.getAttribute('aria-pressed') === 'true');
-    return index < 0 ? null : stem(this.solution.cameras[index].name);
   }
 }
 
