@@ -110,8 +110,9 @@ class TemporaryFolder {
     if (error) FailToWrite(path_, error.value());
     FILE* stream = std::fopen(file.c_str(), "wbx");
     if (!stream) FailToWrite(path_, errno);
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() &&
-                         std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
+    // An empty vector has no data to point to.
+    const bool all = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
+    const bool written = all && std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
     const int why = errno;
     if (std::fclose(stream) != 0 || !written) FailToWrite(path_, written ? errno : why);
   }
