@@ -1,14 +1,13 @@
 #include "app/site.h"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
 #include "app/gzip.h"
 #include "app/program_path.h"
 #include "scene/input_error.h"
+#include "scene/read_file.h"
 
 namespace lobe {
 namespace {
@@ -45,13 +44,6 @@ fs::path FindViewer(const std::optional<std::string>& given) {
                    kHowToGet);
 }
 
-std::vector<uint8_t> ReadBytes(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.good() && !file.eof()) throw InputError(path.string() + ": cannot be read");
-  return bytes;
-}
-
 }  // namespace
 
 SiteFiles ReadViewer(const std::optional<std::string>& given) {
@@ -60,7 +52,7 @@ SiteFiles ReadViewer(const std::optional<std::string>& given) {
   try {
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       if (!entry.is_regular_file()) continue;
-      site[entry.path().lexically_relative(folder).generic_string()] = ReadBytes(entry.path());
+      site[entry.path().lexically_relative(folder).generic_string()] = ReadBytes(entry.path().string());
     }
   } catch (const fs::filesystem_error& e) {
     throw InputError(folder.string() + ": cannot be read: " + e.code().message());

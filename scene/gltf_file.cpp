@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -15,6 +13,7 @@
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_json.h"
 #include "scene/input_error.h"
+#include "scene/read_file.h"
 #include "scene/uri.h"
 
 namespace lobe {
@@ -25,20 +24,12 @@ using Json = nlohmann::json;
 
 using Bytes = std::span<const uint8_t>;
 
-std::vector<uint8_t> ReadWholeFile(const std::string& path) {
+std::vector<uint8_t> ReadGltfBytes(const std::string& path) {
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(path + ": no such file");
-  if (std::filesystem::is_directory(status))
+  if (std::filesystem::is_directory(path, error)) {
     throw InputError(path + ": is a directory, expected a glTF file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(path + ": is not a regular file");
-  std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) throw InputError(path + ": cannot be read: " + std::strerror(errno));
-  std::vector<uint8_t> bytes(std::filesystem::file_size(path, error));
-  if (error || std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
-    throw InputError(path + ": cannot be read to its end");
   }
-  return bytes;
+  return ReadBytes(path);
 }
 
 uint32_t Word(const uint8_t* p) {
@@ -179,7 +170,7 @@ struct GltfFile::Impl {
   std::optional<GltfAccessors> accessors;
 };
 
-GltfFile::GltfFile(const std::string& path) : GltfFile(path, ReadWholeFile(path)) {}
+GltfFile::GltfFile(const std::string& path) : GltfFile(path, ReadGltfBytes(path)) {}
 
 GltfFile::GltfFile(const std::string& path, std::vector<uint8_t> bytes) : impl_(std::make_unique<Impl>()) {
   Impl& g = *impl_;

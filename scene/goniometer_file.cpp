@@ -13,7 +13,7 @@
 
 #include "scene/gltf_json.h"
 #include "scene/input_error.h"
-#include "scene/measured_file.h"
+#include "scene/read_file.h"
 
 namespace lobe {
 namespace {

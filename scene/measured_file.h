@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "brdf/measured.h"
 
@@ -11,8 +9,5 @@ namespace lobe {
 /// Reads measured reflectance: names that end in .binary as MERL's format (merl_file.h), all others as a
 /// table of angles (goniometer_file.h). Throws InputError, one sentence, for whatever is missing or wrong.
 Measured ReadMeasuredFile(const std::string& path);
-
-/// All bytes of a regular file of at most `most` bytes; throws InputError.
-std::vector<uint8_t> ReadBytes(const std::string& path, size_t most);
 
 }  // namespace lobe

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scene/input_error.h"
-#include "scene/measured_file.h"
+#include "scene/read_file.h"
 
 namespace lobe {
 namespace {
