@@ -116,7 +116,7 @@ class DocumentFiller {
     record["exposureScale"] = JsonNumber(colours_.exposure_scale);
     record["surfaceNames"] = s_.scene.surface_names;
     record["faces"] = Faces();
-    own_.add_to_record(&record);
+    if (own_.add_to_record) own_.add_to_record(&record);
     return record;
   }
 

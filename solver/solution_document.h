@@ -13,7 +13,8 @@ namespace lobe {
 struct OwnMembers {
   /// To the extension on a primitive, which holds patch, material, surface, side, planar, hidden and degrees.
   std::function<void(uint32_t patch, const PatchTrees& trees, nlohmann::json* extension)> add_to_patch;
-  /// To the extension on the document: SolutionRecord, version, basis, frame, names, exposure, faces.
+  /// To the extension on the document: SolutionRecord, version, basis, frame, names, exposure, faces. Empty:
+  /// nothing.
   std::function<void(nlohmann::json* record)> add_to_record;
 };
 

@@ -21,9 +21,9 @@ class SolutionWriter {
     // An upper bound: nodes' position, normal, colour and irradiance; elements with their bisections; faces.
     glb_.Reserve(44 * s_.mesh.node_count() + 3 * s_.total.bytes() + 16 * s_.mesh.element_count() +
                  64 * s_.mesh.patches.size() + 28 * s_.scene.faces.size() + 24 * s_.scene.positions.size());
-    const OwnMembers own{
-        [&](uint32_t p, const PatchTrees& trees, json* extension) { AddToPatch(p, trees, extension); },
-        [](json*) {}};
+    const OwnMembers own{.add_to_patch = [&](uint32_t p, const PatchTrees& trees,
+                                             json* extension) { AddToPatch(p, trees, extension); },
+                         .add_to_record = {}};
     FillSolutionDocument(s_, own, &glb_);
     glb_.Write(path);
   }
