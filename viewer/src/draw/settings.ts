@@ -4,8 +4,6 @@
  */
 import { kMostDegree } from '../solution/solution';
 
-export { kMostDegree };
-
 export interface Settings {
   /** Stops: radiance is shown times 2^exposure, as `lobe render --exposure`. */
   exposure: number;

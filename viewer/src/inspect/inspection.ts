@@ -53,15 +53,8 @@ export function inspectNode(solution: Solution, node: number, degree: number): I
 
 /** One lobe as JSON: the members of `lobe inspect --json` that a viewer can know, and a few more. Base and gloss are
  *  one here, so there is one `l_max`. */
-export interface LobeJson {
-  node: number;
-  surface: string;
-  material: string;
-  kind: GlossKind;
-  side: Side;
-  hidden: boolean;
-  position: Vec3;
-  frame: Frame;
+export interface LobeJson
+  extends Pick<Inspection, 'node' | 'surface' | 'material' | 'kind' | 'side' | 'hidden' | 'position' | 'frame'> {
   /** Of the node; null: black. */
   l_max: number | null;
   /** At which everything below was said. */

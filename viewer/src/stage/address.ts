@@ -3,7 +3,8 @@
  * a link that was cut or mistyped shows what it can.
  */
 import { Vector3 } from 'three';
-import { kMostDegree, toneCurves, type FalseColour, type Quantity, type Settings } from '../draw/settings';
+import { toneCurves, type FalseColour, type Quantity, type Settings } from '../draw/settings';
+import { kMostDegree } from '../solution/solution';
 import type { Pose } from './stage';
 
 export const quantities: readonly Quantity[] = [
