@@ -24,6 +24,7 @@ constexpr LedgerEntry kLedger[] = {
     {"in glass", &Ledger::in_glass, "absorbed on the way through glass"},
     {"blocked", &Ledger::blocked, "by black backs and unlit sides"},
     {"escaped", &Ledger::escaped, "out of the scene"},
+    {"below facets", &Ledger::below_facets, "by smooth shading, into the facet itself"},
     {"mirrored", &Ledger::mirrored, "by ideal mirrors and glass, not followed"},
     {"truncated", &Ledger::truncated, "by cut-off lobes"},
     {"unshot", &Ledger::unshot, "still waiting"},
@@ -32,7 +33,7 @@ constexpr LedgerEntry kLedger[] = {
     {"delivered", &Ledger::delivered, "of both, arrived"},
     {"reflected", &Ledger::reflected, "of that, reflected"},
 };
-constexpr size_t kBalanceEntries = 9;  ///< the first ones balance; the others are turnover
+constexpr size_t kBalanceEntries = 10;  ///< the first ones balance; the others are turnover
 
 double Sum(const Ledger::Power& power) { return power[0] + power[1] + power[2]; }
 
@@ -176,7 +177,8 @@ std::string LedgerText(const Ledger& ledger) {
   for (size_t i = 0; i < std::size(kLedger); ++i) {
     if (i == kBalanceEntries) table.AddRow({""});
     const Ledger::Power& p = ledger.*kLedger[i].power;
-    if (kLedger[i].power == &Ledger::in_glass && Sum(p) == 0) continue;
+    const bool rare = kLedger[i].power == &Ledger::in_glass || kLedger[i].power == &Ledger::below_facets;
+    if (rare && Sum(p) == 0) continue;
     table.AddRow({kLedger[i].name, Short(p[0]), Short(p[1]), Short(p[2]),
                   emitted > 0 ? Format("%.2f %%", 100 * Sum(p) / emitted) : "-", kLedger[i].meaning});
   }

@@ -8,7 +8,7 @@ double Ledger::Closure() const {
   double off = 0, power = 0;
   for (int c = 0; c < 3; ++c) {
     off += std::abs(emitted[c] + imbalance[c] - absorbed[c] - in_glass[c] - blocked[c] - escaped[c] -
-                    mirrored[c] - truncated[c] - unshot[c]);
+                    below_facets[c] - mirrored[c] - truncated[c] - unshot[c]);
     power += emitted[c];
   }
   return power > 0 ? off / power : 0.0;

@@ -9,7 +9,8 @@ namespace lobe {
 
 /// Where the power went, watts, per channel. Every entry is computed from its own cause, none as the
 /// rest, so that the balance is a check:
-///   emitted + imbalance = absorbed + in_glass + blocked + escaped + mirrored + truncated + unshot.
+///   emitted + imbalance = absorbed + in_glass + blocked + escaped + below_facets + mirrored + truncated +
+///   unshot.
 struct Ledger {
   using Power = std::array<double, 3>;
   Power emitted{};    ///< pi Le A over the emitting triangles
@@ -23,9 +24,10 @@ struct Ledger {
   Power truncated{};  ///< delivered - absorbed - reflected - by mirrors: what the lobes' tables lose
   Power escaped{};    ///< sent along rays that leave the scene
   Power blocked{};    ///< sent to black backs, to sides without nodes, beyond Links::kMaxMirrors, kMaxGlass
-  Power unshot{};     ///< still waiting at the end
-  /// Delivered minus (sent + passed_on - escaped - blocked - in_glass): point collocation does not conserve
-  /// power. Tends to 0 as the mesh is refined.
+  Power below_facets{};  ///< sent by lobes of smooth-shaded surfaces below the facet that they stand on
+  Power unshot{};        ///< still waiting at the end
+  /// Delivered minus (sent + passed_on - escaped - blocked - in_glass - below_facets): point collocation does
+  /// not conserve power. Tends to 0 as the mesh is refined.
   Power imbalance{};
 
   double Closure() const;  ///< |emitted + imbalance - ...| / emitted, luminance-free sum of channels
@@ -38,7 +40,7 @@ struct StepRecord {
   double residual = 1;    ///< unshot / emitted after it
   double seconds = 0;     ///< since the start
   uint64_t rays = 0;      ///< so far
-  uint32_t shooters = 0;  ///< nodes that shot; in step 0, emitting sides of faces
+  uint32_t shooters = 0;  ///< nodes that shot; in step 0, emitting sides of faces; 0: the step was taken back
 };
 
 }  // namespace lobe

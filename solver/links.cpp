@@ -130,7 +130,12 @@ struct Links::Tracing {
     locator.Locate(scratch.hits, scratch.where);
     scratch.traced += count;
     RandomStream random(Mix(Mix(options.seed, 0x7a5), node));
+    const bool planar = mesh.patches[mesh.node_patch[node]].planar;
     for (size_t i = 0; i < count; ++i) {
+      if (!planar && Vec3(scratch.x[i], scratch.y[i], scratch.z[i]).dot(outward) <= 0) {
+        out[i] = kBelow;
+        continue;
+      }
       const RayHit& hit = scratch.hits[i];
       if (!hit.hit()) {
         out[i] = kEscaped;
@@ -322,7 +327,8 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
           size_t(p.pattern.count())};
       tracing.TraceNode(node, p.pattern, scratch, out, hops[block]);
       const auto blocked = std::count(out.begin(), out.end(), kBlocked);
-      hidden_[node] = 2 * size_t(blocked) > out.size();
+      const auto below = std::count(out.begin(), out.end(), kBelow);
+      hidden_[node] = 2 * size_t(blocked) > out.size() - size_t(below);
     }
     if (stop && stop(double(++done) / blocks)) stopped = true;
   });
@@ -336,8 +342,7 @@ Links::Links(const Scene& scene, const Mesh& mesh, const RayTracer& tracer,
     hops_.insert(hops_.end(), hops[b].begin(), hops[b].end());
     hops[b] = {};
   }
-  if (hops_.size() >= (kAbsorbed & ~kChain))
-    throw std::length_error("more than 2^31 hops of links by mirrors");
+  if (hops_.size() >= (kBelow & ~kChain)) throw std::length_error("more than 2^31 hops of links by mirrors");
   const auto resolve = [&](uint32_t& end) {
     if (!IsNode(end)) return;
     const auto& corners = mesh.elements[end / 6];

@@ -34,11 +34,14 @@ class Links {
   static constexpr uint32_t kBlocked = 0xfffffffeu;  ///< black back, or a side without nodes
   /// Of hops alone: their throughput is what glass on the way has absorbed, where no node of it counts that.
   static constexpr uint32_t kAbsorbed = 0xfffffffdu;
+  /// Leaves below the node's own facet, above its shading horizon: no light arrives from there
+  /// (docs/conventions.md#horizon).
+  static constexpr uint32_t kBelow = 0xfffffffcu;
   /// This bit marks the index of a chain's first hop instead of a node.
   static constexpr uint32_t kChain = 0x80000000u;
   static bool IsNode(uint32_t link) { return link < kChain; }
-  static bool IsLost(uint32_t link) { return link >= kAbsorbed; }
-  static bool IsChain(uint32_t link) { return link >= kChain && link < kAbsorbed; }
+  static bool IsLost(uint32_t link) { return link >= kBelow; }
+  static bool IsChain(uint32_t link) { return link >= kChain && link < kBelow; }
 
   /// One surface on a link's way by mirrors and glass. What arrives through the link is the sum over its hops
   /// of throughput x radiance of `node` towards `wo`. At lost ends the throughput is of power, without the
@@ -91,7 +94,8 @@ class Links {
         const std::function<bool(double fraction)>& stop = {});
 
   bool stopped() const { return stopped_; }
-  /// Nodes more than half of whose links are blocked: they are inside something. Have no weight.
+  /// Nodes more than half of whose links above their facets are blocked: they are inside something. Have no
+  /// weight.
   const std::vector<uint8_t>& hidden() const { return hidden_; }
   const LinkPattern& pattern(uint32_t patch) const { return patches_[patch].pattern; }
   uint64_t seed() const { return options_.seed; }

@@ -27,7 +27,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
     const bool diffuse = total.degrees(n).diffuse();
     for (size_t i = 0; i < targets.size(); ++i) {
       if (Links::IsNode(targets[i])) continue;
-      Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero(), in_glass = Rgb::Zero();
+      Rgb escaped = Rgb::Zero(), blocked = Rgb::Zero(), in_glass = Rgb::Zero(), below = Rgb::Zero();
       if (Links::IsChain(targets[i])) {
         for (const Links::Hop* hop = links.chain(targets[i]);; ++hop) {
           const Rgb throughput = hop->Throughput();
@@ -38,7 +38,9 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
         }
         if ((escaped + blocked + in_glass <= 0).all()) continue;
       } else {
-        (targets[i] == Links::kEscaped ? escaped : blocked) = Rgb::Constant(1);
+        (targets[i] == Links::kEscaped ? escaped
+         : targets[i] == Links::kBelow ? below
+                                       : blocked) = Rgb::Constant(1);
       }
       Vec3 wo = Vec3::UnitZ();
       if (!diffuse) {
@@ -55,6 +57,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
       losses.escaped += power * escaped.cast<double>();
       losses.blocked += power * blocked.cast<double>();
       losses.in_glass += power * in_glass.cast<double>();
+      losses.below_facets += power * below.cast<double>();
     }
   });
   Losses out;
@@ -63,6 +66,7 @@ Losses FindLosses(const Mesh& mesh, const Links& links, const NodeLobes& total, 
     out.escaped += l.escaped;
     out.blocked += l.blocked;
     out.in_glass += l.in_glass;
+    out.below_facets += l.below_facets;
   }
   return out;
 }

@@ -13,7 +13,8 @@ namespace lobe {
 /// Power of reflected light that left nodes, and what of it reaches no node, by each node's own links. Watts.
 struct Losses {
   Eigen::Array3d sent = Eigen::Array3d::Zero(), escaped = Eigen::Array3d::Zero(),
-                 blocked = Eigen::Array3d::Zero(), in_glass = Eigen::Array3d::Zero();
+                 blocked = Eigen::Array3d::Zero(), in_glass = Eigen::Array3d::Zero(),
+                 below_facets = Eigen::Array3d::Zero();
 };
 
 /// Of all that has been shot, total - unshot. `node_area` is 0 for hidden nodes.

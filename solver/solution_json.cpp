@@ -54,14 +54,18 @@ Enum ReadName(const GltfJson& fields, const char* name, const Enum (&values)[cou
 
 // One list for both directions, so that neither can forget an entry.
 constexpr std::pair<const char*, Ledger::Power Ledger::*> kLedgerEntries[] = {
-    {"emitted", &Ledger::emitted},    {"sent", &Ledger::sent},           {"delivered", &Ledger::delivered},
-    {"absorbed", &Ledger::absorbed},  {"inGlass", &Ledger::in_glass},    {"reflected", &Ledger::reflected},
-    {"mirrored", &Ledger::mirrored},  {"truncated", &Ledger::truncated}, {"escaped", &Ledger::escaped},
-    {"blocked", &Ledger::blocked},    {"passedOn", &Ledger::passed_on},  {"unshot", &Ledger::unshot},
-    {"imbalance", &Ledger::imbalance}};
+    {"emitted", &Ledger::emitted},     {"sent", &Ledger::sent},
+    {"delivered", &Ledger::delivered}, {"absorbed", &Ledger::absorbed},
+    {"inGlass", &Ledger::in_glass},    {"reflected", &Ledger::reflected},
+    {"mirrored", &Ledger::mirrored},   {"truncated", &Ledger::truncated},
+    {"escaped", &Ledger::escaped},     {"blocked", &Ledger::blocked},
+    {"passedOn", &Ledger::passed_on},  {"unshot", &Ledger::unshot},
+    {"imbalance", &Ledger::imbalance}, {"belowFacets", &Ledger::below_facets}};
 
-// Absent from solutions without coloured glass.
-constexpr Ledger::Power Ledger::*kOptionalEntry = &Ledger::in_glass;
+// Absent from solutions of earlier versions.
+bool IsOptional(Ledger::Power Ledger::*entry) {
+  return entry == &Ledger::in_glass || entry == &Ledger::below_facets;
+}
 
 json Settings(const SolveOptions& o) {
   json out = {{"maxEdge", JsonNumber(o.mesh.max_edge)},
@@ -139,7 +143,7 @@ json SolutionRecord(const Solution& solution) {
 
   for (const auto& [name, entry] : kLedgerEntries) {
     const Ledger::Power& power = solution.ledger.*entry;
-    if (entry == kOptionalEntry && power == Ledger::Power{}) continue;
+    if (IsOptional(entry) && power == Ledger::Power{}) continue;
     record["ledger"][name] = {Finite(power[0]), Finite(power[1]), Finite(power[2])};
   }
 
@@ -168,7 +172,7 @@ void ReadSolutionRecord(const GltfJson& record, Solution* solution) {
 
   const GltfJson ledger = record.Object("ledger");
   for (const auto& [name, entry] : kLedgerEntries) {
-    if (!ledger.Numbers(name, 3, (solution->ledger.*entry).data()) && entry != kOptionalEntry)
+    if (!ledger.Numbers(name, 3, (solution->ledger.*entry).data()) && !IsOptional(entry))
       ledger.FailValue(name, "3 numbers");
   }
 

@@ -20,6 +20,7 @@
 #include "solver/exposure.h"
 #include "solver/hash.h"
 #include "solver/link_gather.h"
+#include "solver/link_resolution.h"
 #include "solver/links.h"
 #include "solver/losses.h"
 #include "solver/near_contacts.h"
@@ -27,6 +28,7 @@
 #include "solver/refinement.h"
 #include "solver/resume.h"
 #include "solver/shooting.h"
+#include "solver/sweep_plan.h"
 #include "solver/time_left.h"
 
 namespace lobe {
@@ -391,6 +393,7 @@ class ProgressiveSolver {
     rays_under_way_ = 0;
     s_.hidden = links_->hidden();
     area_ = NodeAreas(s_.mesh, s_.hidden);
+    if (by_links_) resolution_ = LinkResolution(s_.mesh, *links_, materials_, area_);
     if (by_links_ && s_.options.accelerate) {
       coarse_ = std::make_unique<CoarseTransport>(s_.mesh, *links_, materials_, area_, opposite_);
     }
@@ -412,6 +415,7 @@ class ProgressiveSolver {
       }
       if (!AddGathered([&] { return GatherLinked(0, LinkField(s_.scene, s_.mesh), 1); })) return false;
     }
+    PassThrough(gained_);
     Commit(0, {}, uint32_t(emitters_.size()));
     if (!(by_links_ && mirrors)) s_.direct = s_.total;
     return true;
@@ -483,25 +487,41 @@ class ProgressiveSolver {
     checkpoint_pause_ = kCheckpointWork * (last_checkpoint_ - now);
   }
 
-  // Sends all unshot light through the links, and with it what the coarse solution says will follow.
+  // Sends all unshot light through the links, and with it what the coarse solution says will follow. If that
+  // does worse than a plain sweep did, all stays as it was.
   bool Sweep(int step) {
+    const SweepPlan plan = PlanSweep(s_.history, s_.options);
     std::vector<std::array<float, 3>> ahead;
-    if (coarse_ && step > 1) ahead = coarse_->Ahead(s_.total, s_.unshot, area_);
+    if (coarse_ && plan.ahead > 0) {
+      ahead = coarse_->Ahead(s_.total, s_.unshot, area_);
+      for (auto& share : ahead) {
+        for (float& s : share) s *= plan.ahead;
+      }
+    }
     shooting_ = s_.unshot;
     if (!ahead.empty()) shooting_.AddScaled(s_.total, ahead);
-    const LinkField field(s_.scene, s_.mesh, shooting_);
+    const LinkField field(s_.scene, s_.mesh, shooting_, resolution_.Degrees(step, plan.degree_cap));
     const auto shooters = uint32_t(std::count(s_.hidden.begin(), s_.hidden.end(), 0));
-    if (!GatherLinked(step, field, Thinning())) return false;
-    Commit(step, ahead, shooters);
+    if (!GatherLinked(step, field, plan.thinning)) return false;
+    PassThrough(gained_);
+    if (!ahead.empty() && !(Left(ahead) <= plan.most_left * s_.residual())) {
+      Record(step, s_.residual(), 0);
+    } else {
+      Commit(step, ahead, shooters);
+    }
     return true;
   }
 
-  // Sparse links suffice for light that is dim against the first bounce: noise of a step is in proportion to
-  // what it moves.
-  int Thinning() const {
-    if (!s_.options.accelerate || !s_.options.thin_late_links || s_.history.empty()) return 1;
-    const double dim = s_.residual() / s_.history.front().residual;
-    return dim > 0.3 ? 1 : dim > 0.1 ? 2 : dim > 0.03 ? 4 : 8;
+  // The residual that would be left if what was gathered became part of the solution.
+  double Left(const std::vector<std::array<float, 3>>& ahead) {
+    std::vector<double> left(s_.mesh.node_count());
+    tbb::parallel_for(uint32_t(0), uint32_t(s_.mesh.node_count()), [&](uint32_t n) {
+      if (s_.hidden[n]) return;
+      const auto& share = ahead[s_.mesh.node_patch[n]];
+      const Rgb flux = gained_.Flux(n) - s_.total.Flux(n) * Rgb(share[0], share[1], share[2]);
+      left[n] = flux.cast<double>().abs().sum() * area_[n];
+    });
+    return std::accumulate(left.begin(), left.end(), 0.0) / emitted_.sum();
   }
 
   // Takes nodes in order of unshot power until step_fraction of it is covered, and shoots them.
@@ -531,6 +551,7 @@ class ProgressiveSolver {
     }
     const ShootingField field(s_.scene, s_.mesh, s_.hidden, shooting_);
     if (!GatherShot(step, field, s_.options.delta_areas, AllNodes())) return false;
+    PassThrough(gained_);
     Commit(step, {}, shooters);
     return true;
   }
@@ -583,7 +604,6 @@ class ProgressiveSolver {
   // Makes a gathered step part of the solution: total = what was gathered of all that was ever shot, and
   // unshot = total - all that was ever shot. What was shot ahead is so taken back.
   void Commit(int step, const std::vector<std::array<float, 3>>& ahead, uint32_t shooters) {
-    PassThrough(gained_);
     const bool all_was_shot = by_links_ || s_.options.step_fraction >= 1;
     flux_.resize(s_.mesh.node_count());
     tbb::parallel_for(uint32_t(0), uint32_t(s_.mesh.node_count()), [&](uint32_t n) {
@@ -628,9 +648,13 @@ class ProgressiveSolver {
         split->lobe_writes += r.lobe_writes;
       }
     }
+    Record(step, unshot / emitted_.sum(), shooters);
+  }
+
+  void Record(int step, double residual, uint32_t shooters) {
     StepRecord record;
     record.step = step;
-    record.residual = unshot / emitted_.sum();
+    record.residual = residual;
     record.seconds = Seconds();
     record.rays = rays_;
     record.shooters = shooters;
@@ -655,7 +679,8 @@ class ProgressiveSolver {
   // The ledger's entries that follow from what has been shot in all, total - unshot.
   void Close() {
     Ledger& ledger = s_.ledger;
-    ledger.emitted = ledger.sent = ledger.escaped = ledger.blocked = ledger.in_glass = ledger.unshot = {};
+    ledger.emitted = ledger.sent = ledger.escaped = ledger.blocked = ledger.in_glass = ledger.below_facets =
+        ledger.unshot = {};
     ledger.emitted += emitted_;
     if (s_.history.empty()) {
       ledger.unshot = ledger.emitted;
@@ -671,13 +696,15 @@ class ProgressiveSolver {
       ledger.escaped += emitted_ * emission.escaped + reflected.escaped;
       ledger.blocked += emitted_ * emission.blocked + reflected.blocked;
       ledger.in_glass += emitted_ * emission.in_glass + reflected.in_glass;
+      ledger.below_facets += reflected.below_facets;
       for (uint32_t n = 0; n < s_.mesh.node_count(); ++n) {
         if (area_[n] > 0) ledger.unshot += s_.unshot.Flux(n).cast<double>() * area_[n];
       }
     }
     for (int c = 0; c < 3; ++c) {
-      ledger.imbalance[c] = ledger.delivered[c] - (ledger.sent[c] + ledger.passed_on[c] - ledger.escaped[c] -
-                                                   ledger.blocked[c] - ledger.in_glass[c]);
+      ledger.imbalance[c] =
+          ledger.delivered[c] - (ledger.sent[c] + ledger.passed_on[c] - ledger.escaped[c] -
+                                 ledger.blocked[c] - ledger.in_glass[c] - ledger.below_facets[c]);
     }
     if (s_.history.empty()) ledger.imbalance = {};
     s_.solve_seconds = Seconds();
@@ -705,6 +732,7 @@ class ProgressiveSolver {
   std::vector<MaterialLobes> materials_;
   std::vector<PlanarMirror> planar_mirrors_;
   std::unique_ptr<Links> links_;
+  LinkResolution resolution_;
   std::unique_ptr<CoarseTransport> coarse_;
   std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none
   std::vector<double> area_;

@@ -1,0 +1,48 @@
+#include "solver/sweep_plan.h"
+
+#include <algorithm>
+
+namespace lobe {
+namespace {
+
+int Thinning(double dim) { return dim > 0.3 ? 1 : dim > 0.1 ? 2 : dim > 0.03 ? 4 : 8; }
+
+// Solves whose plain sweeps leave less take few anyway, and what they leave varies. (chosen)
+constexpr double kLeftInAnyCase = 0.5;
+
+// From where nothing is cut to senders that are all diffuse.
+constexpr int kDegreeCaps[] = {64, 8, 4, 2, 1, 0};
+constexpr int kLastCap = 5;
+
+}  // namespace
+
+SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& options) {
+  SweepPlan plan;
+  int failures = 0, cap = 0;
+  bool failed = false;
+  for (size_t step = 1;; ++step) {
+    plan.ahead = 0;
+    // The first sweep is plain: it tells what plain ones leave.
+    if (options.accelerate && step > 1 && !failed && failures < SweepPlan::kMostFailures) {
+      plan.ahead = 1.0f / float(1 << failures);
+    }
+    plan.thinning = 1;
+    if (options.accelerate && options.thin_late_links && cap == 0) {
+      plan.thinning = Thinning(history[step - 1].residual / history[0].residual);
+    }
+    plan.degree_cap = kDegreeCaps[cap];
+    if (step == history.size()) return plan;
+
+    const double ratio = history[step].residual / history[step - 1].residual;
+    failed = false;
+    if (plan.ahead == 0) {
+      plan.most_left = std::max(kLeftInAnyCase, ratio);
+      if (!(ratio < 1) && cap < kLastCap) ++cap;
+    } else if (!(ratio <= plan.most_left)) {
+      failed = true;
+      ++failures;
+    }
+  }
+}
+
+}  // namespace lobe

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/ledger.h"
+#include "solver/options.h"
+
+namespace lobe {
+
+/// How the next sweep through the links is to be done. All of it follows from the residuals so far, so that a
+/// solve that is resumed goes on as it would have gone.
+struct SweepPlan {
+  /// Shoot ahead this share of what a coarse solution suggests; 0: a plain sweep.
+  float ahead = 0;
+  /// A sweep that shoots ahead is taken back if it leaves more than this times the residual: what the last
+  /// plain sweep left, and half in any case.
+  double most_left = 1;
+  /// Every so many-th link: sparse links suffice for light that is dim against the first bounce, since the
+  /// noise of a step is in proportion to what it moves.
+  int thinning = 1;
+  /// Limit on the degree of what is sent. Lowered each time that a plain sweep leaves no less than there was.
+  /// At 0 all senders are diffuse; then a sweep multiplies the largest radiance by at most the largest
+  /// albedo, so solves of albedos below 1 end.
+  int degree_cap = 64;
+
+  /// Failures after which a solve shoots ahead no more. With a plain sweep after each, a solve takes at most
+  /// so many sweeps more than plain ones do.
+  static constexpr int kMostFailures = 3;
+};
+
+/// For the step that follows `history` (one record at least, that of emission).
+SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& options);
+
+}  // namespace lobe
