@@ -19,6 +19,9 @@ namespace {
 
 constexpr uint32_t kBlockOfNodes = 64;
 
+// Flat shading to rounding: normals that differ by less than 0.26 degrees.
+constexpr float kLean = 1e-5f;
+
 // An order of the element's three corners, in which each corner comes with the probability of its weight
 // among those not yet taken. The first that is not hidden then has the probability of its renormalised
 // weight, whichever are hidden; and that is known only after all links are traced.
@@ -130,9 +133,9 @@ struct Links::Tracing {
     locator.Locate(scratch.hits, scratch.where);
     scratch.traced += count;
     RandomStream random(Mix(Mix(options.seed, 0x7a5), node));
-    const bool planar = mesh.patches[mesh.node_patch[node]].planar;
+    const bool leans = outward.dot(frame.z) < 1 - kLean;
     for (size_t i = 0; i < count; ++i) {
-      if (!planar && Vec3(scratch.x[i], scratch.y[i], scratch.z[i]).dot(outward) <= 0) {
+      if (leans && Vec3(scratch.x[i], scratch.y[i], scratch.z[i]).dot(outward) <= 0) {
         out[i] = kBelow;
         continue;
       }

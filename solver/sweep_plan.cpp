@@ -27,7 +27,7 @@ SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& 
       plan.ahead = 1.0f / float(1 << failures);
     }
     plan.thinning = 1;
-    if (options.accelerate && options.thin_late_links && cap == 0) {
+    if (options.accelerate && options.thin_late_links && cap == 0 && failures == 0) {
       plan.thinning = Thinning(history[step - 1].residual / history[0].residual);
     }
     plan.degree_cap = kDegreeCaps[cap];

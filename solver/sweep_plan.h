@@ -16,16 +16,17 @@ struct SweepPlan {
   /// plain sweep left, and half in any case.
   double most_left = 1;
   /// Every so many-th link: sparse links suffice for light that is dim against the first bounce, since the
-  /// noise of a step is in proportion to what it moves.
+  /// noise of a step is in proportion to what it moves. After a failure all links: they settle slow light
+  /// sooner.
   int thinning = 1;
   /// Limit on the degree of what is sent. Lowered each time that a plain sweep leaves no less than there was.
   /// At 0 all senders are diffuse; then a sweep multiplies the largest radiance by at most the largest
   /// albedo, so solves of albedos below 1 end.
   int degree_cap = 64;
 
-  /// Failures after which a solve shoots ahead no more. With a plain sweep after each, a solve takes at most
+  /// Failures after which a solve shoots ahead no more. With a plain sweep after each, a solve takes about
   /// so many sweeps more than plain ones do.
-  static constexpr int kMostFailures = 3;
+  static constexpr int kMostFailures = 2;
 };
 
 /// For the step that follows `history` (one record at least, that of emission).

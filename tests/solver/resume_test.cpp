@@ -99,7 +99,7 @@ void ExpectSameBits(const Solution& a, const Solution& b) {
   EXPECT_EQ(a.stop_reason, b.stop_reason);
   EXPECT_EQ(a.material_kinds, b.material_kinds);
   EXPECT_EQ(a.material_errors, b.material_errors);
-  static_assert(sizeof(Ledger) == 13 * sizeof(Ledger::Power));
+  static_assert(sizeof(Ledger) == 14 * sizeof(Ledger::Power));
   EXPECT_EQ(std::memcmp(&a.ledger, &b.ledger, sizeof(Ledger)), 0);
   ASSERT_EQ(a.history.size(), b.history.size());
   for (size_t i = 0; i < a.history.size(); ++i) {
