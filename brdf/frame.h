@@ -25,4 +25,13 @@ struct Frame {
   Vec3 ToWorld(const Vec3& local) const { return x * local.x() + y * local.y() + z * local.z(); }
 };
 
+/// A local direction below the horizon is bent up to it before a lobe is read: the even basis would
+/// mirror it (docs/conventions.md#horizon).
+inline Vec3 BendToHorizon(const Vec3& local) {
+  if (local.z() >= 0) return local;
+  const float s = std::hypot(local.x(), local.y());
+  if (s == 0) return {1, 0, 0};
+  return {local.x() / s, local.y() / s, 0};
+}
+
 }  // namespace lobe

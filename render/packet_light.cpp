@@ -41,21 +41,23 @@ struct alignas(64) Values {
   float at[3 * kLanes];
 };
 
-// World to a node's frame.
+// World to a node's frame, bent to the horizon.
 LOBE_SIMD_CLONES void ToLocal(const Frame& frame, float sign, const float* px, const float* py,
                               const float* pz, float* out) {
   const FloatLanes wx = sign * AsLanes(px), wy = sign * AsLanes(py), wz = sign * AsLanes(pz);
-  AsLanes(out) = frame.x[0] * wx + frame.x[1] * wy + frame.x[2] * wz;
-  AsLanes(out + kLanes) = frame.y[0] * wx + frame.y[1] * wy + frame.y[2] * wz;
-  AsLanes(out + 2 * kLanes) = frame.z[0] * wx + frame.z[1] * wy + frame.z[2] * wz;
-}
-
-// A lobe sends nothing below its horizon (docs/conventions.md#horizon).
-LOBE_SIMD_CLONES void ClearBelow(const float* local_z, float* values) {
-  const IntLanes below = Negative(AsLanes(local_z));
-  for (int c = 0; c < 3; ++c) {
-    AsLanes(values + c * kLanes) = Select(below, FloatLanes{}, AsLanes(values + c * kLanes));
-  }
+  const FloatLanes x = frame.x[0] * wx + frame.x[1] * wy + frame.x[2] * wz;
+  const FloatLanes y = frame.y[0] * wx + frame.y[1] * wy + frame.y[2] * wz;
+  const FloatLanes z = frame.z[0] * wx + frame.z[1] * wy + frame.z[2] * wz;
+  const FloatLanes squared = x * x + y * y;
+  FloatLanes length;
+  for (int i = 0; i < kLanes; ++i) length[i] = std::sqrt(squared[i]);
+  // Straight below has no horizon to go to: as BendToHorizon, to x.
+  const FloatLanes one = FloatLanes{} + 1.0f, zero = {};
+  const IntLanes below = Negative(z), aside = Different((UintLanes)squared, UintLanes{});
+  const FloatLanes scale = Select(aside, 1.0f / length, zero);
+  AsLanes(out) = Select(below, x * scale + Select(aside, zero, one), x);
+  AsLanes(out + kLanes) = Select(below, y * scale, y);
+  AsLanes(out + 2 * kLanes) = Select(below, zero, z);
 }
 
 // Lagrange's functions of n Chebyshev points: (1 + 2 sum_k T_k(s_i) T_k(s)) / n.
@@ -193,7 +195,6 @@ void PacketLight::State::ReadExactly(uint32_t node, const EyePacket& rays, float
   ToLocal(Frame(solution.mesh.node_normal[node]), -1, rays.x, rays.y, rays.z, local);
   std::fill_n(out, 3 * kLanes, 0.0f);
   AddNode(node, local, out);
-  if (!solution.total.degrees(node).diffuse()) ClearBelow(local + 2 * kLanes, out);
 }
 
 namespace {

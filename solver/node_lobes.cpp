@@ -94,11 +94,8 @@ Rgb NodeLobes::Radiance(uint32_t node, const Vec3& wo_local, float* basis, LobeP
     const float* v = base(node);
     return Rgb(v[0], v[1], v[2]) * (1.0f / std::sqrt(2.0f * std::numbers::pi_v<float>));
   }
-  if (wo_local.z() < 0) {
-    std::fill_n(basis, CoefficientCount(degree), 0.0f);
-    return Rgb::Zero();
-  }
-  bases_[degree]->Evaluate(wo_local.x(), wo_local.y(), wo_local.z(), basis);
+  const Vec3 wo = BendToHorizon(wo_local);
+  bases_[degree]->Evaluate(wo.x(), wo.y(), wo.z(), basis);
   return RadianceFromBasis(node, basis, part);
 }
 

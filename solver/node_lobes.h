@@ -62,9 +62,9 @@ class NodeLobes {
   /// Integral of L cos over the hemisphere (W m^-2), base and gloss together.
   Rgb Flux(uint32_t node) const;
 
-  /// Radiance leaving `node` towards `wo_local`, base and gloss together or one of them; may be negative
-  /// where a cut-off lobe rings. A lobe sends nothing below its horizon (docs/conventions.md#horizon). `basis`
-  /// is scratch of at least CoefficientCount(max_degree).
+  /// Radiance leaving `node` towards `wo_local` (bent to the horizon), base and gloss together or one of
+  /// them; may be negative where a cut-off lobe rings. `basis` is scratch of at least
+  /// CoefficientCount(max_degree).
   Rgb Radiance(uint32_t node, const Vec3& wo_local, float* basis, LobePart part = LobePart::kBoth) const;
   /// The same for a basis already evaluated in this node's frame, for this part or both.
   Rgb RadianceFromBasis(uint32_t node, const float* basis, LobePart part = LobePart::kBoth) const;

@@ -35,5 +35,13 @@ TEST(FrameTest, LocalAndWorldAreInverse) {
   EXPECT_LT((f.ToWorld(f.ToLocal(w)) - w).norm(), 1e-6);
 }
 
+TEST(FrameTest, DirectionsBelowTheHorizonAreBentToIt) {
+  const Vec3 bent = BendToHorizon(Vec3(0.6f, 0.0f, -0.8f));
+  EXPECT_LT((bent - Vec3(1, 0, 0)).norm(), 1e-6);
+  const Vec3 above(0.6f, 0.0f, 0.8f);
+  EXPECT_EQ(BendToHorizon(above), above);
+  EXPECT_TRUE(BendToHorizon(Vec3(0, 0, -1)).allFinite());
+}
+
 }  // namespace
 }  // namespace lobe

@@ -64,11 +64,14 @@ describe('A frame', () => {
     [f.x, f.y, f.z].flat().forEach((v, i) => expect(v).toBeCloseTo([1, 0, 0, 0, 0, -1, 0, 1, 0][i], 12));
   });
 
-  it('takes directions there and back', () => {
+  it('takes directions there and back, and bends what is below the horizon to it', () => {
     const f = frameOf([0.48, -0.6, -0.64]);
     for (const d of directions(20)) {
       const w = toWorld(f, d);
       toLocal(f, w).forEach((v, i) => expect(v).toBeCloseTo(d[i], 12));
+      const [x, y, z] = toLocal(f, toWorld(f, [d[0], d[1], -d[2]]));
+      expect(z).toBe(0);
+      expect(Math.hypot(x, y)).toBeCloseTo(1, 12);
     }
   });
 });

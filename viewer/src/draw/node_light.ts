@@ -59,11 +59,14 @@ export class NodeLight {
           // By the sign's own bit: -0 has one, too.
           float s = (way.z >> 31) != 0u ? -1.0 : 1.0, a = -1.0 / (s + n.z), b = n.x * n.y * a;
           vec3 ex = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), ey = vec3(b, s + n.y * n.y * a, -n.y);
+          // docs/conventions.md#horizon
           vec2 disc = vec2(dot(ex, wo), dot(ey, wo));
-          vec3 light = vec3(0.0), alongX = vec3(0.0), alongY = vec3(0.0);
-          // A lobe sends nothing below its horizon: docs/conventions.md#horizon
-          if (dot(n, wo) >= 0.0) light = lobeOf(int(place.w), min(int(way.w), degree), disc, alongX, alongY);
-          mat3 slope = 0.5 * (outerProduct(ex, alongX) + outerProduct(ey, alongY));
+          bool above = dot(n, wo) >= 0.0;
+          if (!above) disc = dot(disc, disc) > 0.0 ? normalize(disc) : vec2(1.0, 0.0);
+          vec3 alongX, alongY;
+          vec3 light = lobeOf(int(place.w), min(int(way.w), degree), disc, alongX, alongY);
+          // What is bent to the horizon stays there.
+          mat3 slope = above ? 0.5 * (outerProduct(ex, alongX) + outerProduct(ey, alongY)) : mat3(0.0);
           red = vec4(slope[0], light.r - dot(slope[0], wo));
           green = vec4(slope[1], light.g - dot(slope[1], wo));
           blue = vec4(slope[2], light.b - dot(slope[2], wo));

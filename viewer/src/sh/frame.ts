@@ -20,9 +20,12 @@ export function dot(a: Vec3, b: Vec3): number {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/** World to frame. */
+/** World to frame. What lies below the horizon is bent to it (docs/conventions.md#horizon). */
 export function toLocal(f: Frame, w: Vec3): Vec3 {
-  return [dot(f.x, w), dot(f.y, w), dot(f.z, w)];
+  const x = dot(f.x, w), y = dot(f.y, w), z = dot(f.z, w);
+  if (z >= 0) return [x, y, z];
+  const length = Math.hypot(x, y);
+  return length > 0 ? [x / length, y / length, 0] : [1, 0, 0];
 }
 
 /** Frame to world. */
