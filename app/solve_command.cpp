@@ -332,7 +332,8 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->capture_default_str();
   solve
       ->add_option("--residual", o.residual,
-                   "Stop when unshot over emitted power is below this, between 0 and 1")
+                   "Stop when unshot over emitted power is below this, between 0 and 1, and in dim places, too, "
+                   "all but 30 times that of their own light has been passed on")
       ->type_name("R")
       ->capture_default_str();
   solve

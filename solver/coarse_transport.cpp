@@ -15,6 +15,10 @@ constexpr uint32_t kBlockOfNodes = 1024;
 // What leaves a cluster beyond this many times what it has gathered is not believed.
 constexpr double kMostAhead = 100;
 
+// A cluster's row is corrected if, by it, more than this many times what came should have come. Ordinary
+// rooms have 0.4 to 2.4, docs/validation.md#coarse.
+constexpr double kMostOverrated = 4;
+
 // Mean albedo over cos-weighted incidence, midpoints of equal strata of sin^2 theta.
 template <typename Albedo>
 Rgb HemisphericalMean(const Albedo& albedo) {
@@ -106,29 +110,51 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
   for (int k = 0; k < clusters_; ++k) form_factor_.row(k) /= std::max(area_[k], 1e-30);
 }
 
-std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total, const NodeLobes& unshot,
+// A cluster is one brightness. Where it reaches around a wall, into a bright and a dim half of a room, or
+// holds its light where it leaves at once (the rim of a narrow gap), it seems to send far more to some
+// clusters than it does. How much truly came to each is known: all that was gathered but the direct light.
+// Rows that would have brought many times as much are scaled to that.
+void CoarseTransport::CorrectRows(const Eigen::VectorXd& shot, const Eigen::VectorXd& came,
+                                  Eigen::MatrixXd* system) const {
+  const Eigen::VectorXd predicted = shot - *system * shot;
+  for (int k = 0; k < clusters_; ++k) {
+    if (!(predicted[k] > kMostOverrated * came[k])) continue;
+    system->row(k) *= std::max(0.0, came[k]) / predicted[k];
+    system->row(k)[k] += 1 - std::max(0.0, came[k]) / predicted[k];
+  }
+}
+
+std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total, const NodeLobes& direct,
+                                                         const NodeLobes& unshot,
                                                          const std::vector<double>& node_area) const {
-  Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(clusters_, 3), waiting = gathered;
-  std::vector<std::array<Rgb, 2>> flux(mesh_.node_count());
+  Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(clusters_, 3), straight = gathered, waiting = gathered;
+  std::vector<std::array<Rgb, 3>> flux(mesh_.node_count());
   tbb::parallel_for(uint32_t(0), uint32_t(mesh_.node_count()), [&](uint32_t n) {
-    flux[n] = {total.Flux(n), unshot.Flux(n)};
+    flux[n] = {total.Flux(n), direct.Flux(n), unshot.Flux(n)};
   });
   for (uint32_t n = 0; n < mesh_.node_count(); ++n) {
     if (node_area[n] == 0) continue;
     const int k = int(cluster_[mesh_.node_patch[n]]);
     gathered.row(k) += (flux[n][0].cast<double>() * node_area[n]).matrix().transpose();
-    waiting.row(k) += (flux[n][1].cast<double>() * node_area[n]).matrix().transpose();
+    straight.row(k) += (flux[n][1].cast<double>() * node_area[n]).matrix().transpose();
+    waiting.row(k) += (flux[n][2].cast<double>() * node_area[n]).matrix().transpose();
   }
   std::vector<std::array<float, 3>> ahead(mesh_.patches.size(), {0, 0, 0});
   for (int c = 0; c < 3; ++c) {
     // Radiosity x = waiting + albedo F x, in watts per square metre; x is all that will ever be shot.
-    Eigen::VectorXd radiosity(clusters_);
-    for (int k = 0; k < clusters_; ++k) radiosity[k] = waiting(k, c) / std::max(area_[k], 1e-30);
+    const auto per_area = [&](const Eigen::VectorXd& power) {
+      Eigen::VectorXd out(clusters_);
+      for (int k = 0; k < clusters_; ++k) out[k] = power[k] / std::max(area_[k], 1e-30);
+      return out;
+    };
+    const Eigen::VectorXd radiosity = per_area(waiting.col(c));
     Eigen::MatrixXd system =
         Eigen::MatrixXd::Identity(clusters_, clusters_) - albedo_[c].asDiagonal() * form_factor_;
     for (int k = 0; k < clusters_; ++k) {
       if (other_side_[k] >= 0) system.row(k) -= through_[c][k] * form_factor_.row(other_side_[k]);
     }
+    CorrectRows(per_area(gathered.col(c) - waiting.col(c)), per_area(gathered.col(c) - straight.col(c)),
+                &system);
     const Eigen::VectorXd x = system.partialPivLu().solve(radiosity);
     if (!x.allFinite()) continue;
     for (size_t p = 0; p < ahead.size(); ++p) {

@@ -29,11 +29,15 @@ class CoarseTransport {
                   const std::vector<double>& node_area, const std::vector<uint32_t>& opposite);
 
   /// Per patch and channel: the share of what a patch has gathered so far (`total`) that is worth shooting
-  /// ahead, beside all of `unshot`. Zero where nothing sensible can be said.
-  std::vector<std::array<float, 3>> Ahead(const NodeLobes& total, const NodeLobes& unshot,
+  /// ahead, beside all of `unshot`. Zero where nothing sensible can be said. `direct`: what of `total` has
+  /// come by no cluster.
+  std::vector<std::array<float, 3>> Ahead(const NodeLobes& total, const NodeLobes& direct,
+                                          const NodeLobes& unshot,
                                           const std::vector<double>& node_area) const;
 
  private:
+  void CorrectRows(const Eigen::VectorXd& shot, const Eigen::VectorXd& came, Eigen::MatrixXd* system) const;
+
   const Mesh& mesh_;
   std::vector<uint32_t> cluster_;  // per patch
   int clusters_ = 0;

@@ -30,12 +30,18 @@
 #include "solver/shooting.h"
 #include "solver/sweep_plan.h"
 #include "solver/time_left.h"
+#include "solver/unsettled.h"
 
 namespace lobe {
 namespace {
 
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
+
+// A solve goes on until light is settled on all but this share of the surfaces: at the places left out, what is
+// unshot is at most so many times the residual, of the light of the place. docs/validation.md#settled.
+constexpr double kMostUnsettled = 0.01;
+constexpr double kMostLeft = 30;
 
 // Emission alone is worth a checkpoint if it took this share of the pause between checkpoints (chosen).
 constexpr double kEmissionShare = 0.1;
@@ -449,14 +455,22 @@ class ProgressiveSolver {
 
   // Is there nothing to do after the last whole step?
   std::optional<StopReason> WhyDone() const {
-    if (s_.residual() <= s_.options.residual) return StopReason::kConverged;
     const size_t n = s_.history.size();
-    if (n > size_t(s_.options.max_steps)) return StopReason::kStepLimit;
-    if (!std::isfinite(s_.residual())) return StopReason::kNotConverging;
-    if (n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual) {
-      return StopReason::kNotConverging;
+    const bool stalls =
+        n > kPatience && s_.history[n - 1].residual > 0.999 * s_.history[n - 1 - kPatience].residual;
+    if (s_.residual() <= s_.options.residual && (!by_links_ || stalls || Settled())) {
+      return StopReason::kConverged;
     }
+    if (n > size_t(s_.options.max_steps)) return StopReason::kStepLimit;
+    if (!std::isfinite(s_.residual()) || stalls) return StopReason::kNotConverging;
     return std::nullopt;
+  }
+
+  // Is light settled almost everywhere, also where there is little? With links only: their last sweeps cost
+  // next to nothing.
+  bool Settled() const {
+    const std::vector<double> area = area_.empty() ? NodeAreas(s_.mesh, s_.hidden) : area_;
+    return UnsettledArea(s_.total, s_.unshot, area, kMostLeft * s_.options.residual) <= kMostUnsettled;
   }
 
   StopReason Iterate() {
@@ -493,7 +507,7 @@ class ProgressiveSolver {
     const SweepPlan plan = PlanSweep(s_.history, s_.options);
     std::vector<std::array<float, 3>> ahead;
     if (coarse_ && plan.ahead > 0) {
-      ahead = coarse_->Ahead(s_.total, s_.unshot, area_);
+      ahead = coarse_->Ahead(s_.total, s_.direct, s_.unshot, area_);
       for (auto& share : ahead) {
         for (float& s : share) s *= plan.ahead;
       }

@@ -22,8 +22,9 @@ SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& 
   bool failed = false;
   for (size_t step = 1;; ++step) {
     plan.ahead = 0;
-    // The first sweep is plain: it tells what plain ones leave.
-    if (options.accelerate && step > 1 && !failed && failures < SweepPlan::kMostFailures) {
+    // The first sweep is plain: it tells what plain ones leave. So are those that settle dim places only.
+    const bool settling = history[step - 1].residual <= options.residual;
+    if (options.accelerate && step > 1 && !settling && !failed && failures < SweepPlan::kMostFailures) {
       plan.ahead = 1.0f / float(1 << failures);
     }
     plan.thinning = 1;
