@@ -15,10 +15,6 @@ constexpr uint32_t kBlockOfNodes = 1024;
 // What leaves a cluster beyond this many times what it has gathered is not believed.
 constexpr double kMostAhead = 100;
 
-// A cluster's row is corrected if, by it, more than this many times what came should have come. Ordinary
-// rooms have 0.4 to 2.4, docs/validation.md#coarse.
-constexpr double kMostOverrated = 4;
-
 // Mean albedo over cos-weighted incidence, midpoints of equal strata of sin^2 theta.
 template <typename Albedo>
 Rgb HemisphericalMean(const Albedo& albedo) {
@@ -115,10 +111,10 @@ CoarseTransport::CoarseTransport(const Mesh& mesh, const Links& links,
 // clusters than it does. How much truly came to each is known: all that was gathered but the direct light.
 // Rows that would have brought many times as much are scaled to that.
 void CoarseTransport::CorrectRows(const Eigen::VectorXd& shot, const Eigen::VectorXd& came,
-                                  Eigen::MatrixXd* system) const {
+                                  double most_overrated, Eigen::MatrixXd* system) const {
   const Eigen::VectorXd predicted = shot - *system * shot;
   for (int k = 0; k < clusters_; ++k) {
-    if (!(predicted[k] > kMostOverrated * came[k])) continue;
+    if (!(predicted[k] > most_overrated * came[k])) continue;
     system->row(k) *= std::max(0.0, came[k]) / predicted[k];
     system->row(k)[k] += 1 - std::max(0.0, came[k]) / predicted[k];
   }
@@ -126,7 +122,8 @@ void CoarseTransport::CorrectRows(const Eigen::VectorXd& shot, const Eigen::Vect
 
 std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total, const NodeLobes& direct,
                                                          const NodeLobes& unshot,
-                                                         const std::vector<double>& node_area) const {
+                                                         const std::vector<double>& node_area,
+                                                         double most_overrated) const {
   Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(clusters_, 3), straight = gathered, waiting = gathered;
   std::vector<std::array<Rgb, 3>> flux(mesh_.node_count());
   tbb::parallel_for(uint32_t(0), uint32_t(mesh_.node_count()), [&](uint32_t n) {
@@ -154,7 +151,7 @@ std::vector<std::array<float, 3>> CoarseTransport::Ahead(const NodeLobes& total,
       if (other_side_[k] >= 0) system.row(k) -= through_[c][k] * form_factor_.row(other_side_[k]);
     }
     CorrectRows(per_area(gathered.col(c) - waiting.col(c)), per_area(gathered.col(c) - straight.col(c)),
-                &system);
+                most_overrated, &system);
     const Eigen::VectorXd x = system.partialPivLu().solve(radiosity);
     if (!x.allFinite()) continue;
     for (size_t p = 0; p < ahead.size(); ++p) {

@@ -30,13 +30,15 @@ class CoarseTransport {
 
   /// Per patch and channel: the share of what a patch has gathered so far (`total`) that is worth shooting
   /// ahead, beside all of `unshot`. Zero where nothing sensible can be said. `direct`: what of `total` has
-  /// come by no cluster.
+  /// come by no cluster. A cluster that should have gathered more than `most_overrated` times what came is
+  /// taken to gather as much less from now on.
   std::vector<std::array<float, 3>> Ahead(const NodeLobes& total, const NodeLobes& direct,
-                                          const NodeLobes& unshot,
-                                          const std::vector<double>& node_area) const;
+                                          const NodeLobes& unshot, const std::vector<double>& node_area,
+                                          double most_overrated) const;
 
  private:
-  void CorrectRows(const Eigen::VectorXd& shot, const Eigen::VectorXd& came, Eigen::MatrixXd* system) const;
+  void CorrectRows(const Eigen::VectorXd& shot, const Eigen::VectorXd& came, double most_overrated,
+                   Eigen::MatrixXd* system) const;
 
   const Mesh& mesh_;
   std::vector<uint32_t> cluster_;  // per patch

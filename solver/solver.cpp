@@ -38,8 +38,8 @@ namespace {
 // Give up when this many steps together lower the residual by less than a per mille.
 constexpr int kPatience = 25;
 
-// A solve goes on until light is settled on all but this share of the surfaces: at the places left out, what is
-// unshot is at most so many times the residual, of the light of the place. docs/validation.md#settled.
+// A solve goes on until light is settled on all but this share of the surfaces: at the places left out, what
+// is unshot is at most so many times the residual, of the light of the place. docs/validation.md#settled.
 constexpr double kMostUnsettled = 0.01;
 constexpr double kMostLeft = 30;
 
@@ -507,7 +507,7 @@ class ProgressiveSolver {
     const SweepPlan plan = PlanSweep(s_.history, s_.options);
     std::vector<std::array<float, 3>> ahead;
     if (coarse_ && plan.ahead > 0) {
-      ahead = coarse_->Ahead(s_.total, s_.direct, s_.unshot, area_);
+      ahead = coarse_->Ahead(s_.total, s_.direct, s_.unshot, area_, plan.most_overrated);
       for (auto& share : ahead) {
         for (float& s : share) s *= plan.ahead;
       }

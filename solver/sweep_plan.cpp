@@ -26,6 +26,7 @@ SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& 
     const bool settling = history[step - 1].residual <= options.residual;
     if (options.accelerate && step > 1 && !settling && !failed && failures < SweepPlan::kMostFailures) {
       plan.ahead = 1.0f / float(1 << failures);
+      plan.most_overrated = failures > 0 ? 1 : 4;
     }
     plan.thinning = 1;
     if (options.accelerate && options.thin_late_links && cap == 0 && failures == 0) {

@@ -12,6 +12,10 @@ namespace lobe {
 struct SweepPlan {
   /// Shoot ahead this share of what a coarse solution suggests; 0: a plain sweep.
   float ahead = 0;
+  /// Where the coarse solution says that more than this many times what came should have come, it is
+  /// corrected (CoarseTransport). Ordinary rooms have 0.4 to 2.4 (docs/validation.md#coarse). After a failure
+  /// every cluster that is overrated is.
+  double most_overrated = 4;
   /// A sweep that shoots ahead is taken back if it leaves more than this times the residual: what the last
   /// plain sweep left, and half in any case.
   double most_left = 1;
