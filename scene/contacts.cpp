@@ -19,20 +19,6 @@ namespace lobe {
 
 namespace {
 
-ContactReach Reach(const Scene& scene, const ContactOptions& options) {
-  const Eigen::AlignedBox3f bounds = scene.Bounds();
-  const double size = bounds.diagonal().cast<double>().norm();
-  const double farthest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-  ContactReach reach;
-  // Transforms and modelling programs leave a few roundings.
-  reach.rounding = 4 * std::ldexp(farthest, -23);
-  // Clear of what the tessellation welds (scene/tessellate.cpp), too.
-  reach.snap = std::max(4 * reach.rounding, 2e-6 * size);
-  reach.distance = std::max(std::min<double>(options.distance, 1e-3 * size), 2 * reach.rounding);
-  return reach;
-}
-
-
 /// Is the back of one of the faces that repeat each other seen, or a front on either side?
 bool ShowsBothSides(const Scene& scene, const std::vector<uint32_t>& sheet) {
   const Vec3 normal = scene.GeometricNormal(scene.faces[sheet[0]]);
@@ -129,7 +115,7 @@ Scene CutAlongContacts(Scene scene, const ContactOptions& options, ContactReport
   if (!report) report = &unused;
   *report = {};
   if (!(options.distance > 0) || scene.faces.empty()) return scene;
-  const ContactReach reach = Reach(scene, options);
+  const ContactReach reach = ReachIn(scene, options.distance);
   SceneCutter cutter(std::move(scene), reach, static_cast<size_t>(std::max(options.max_lines, 0)));
   if (!cutter.Cut(FindLines(cutter))) return cutter.Take();
   cutter.Rebuild();

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "scene/coincident_faces.h"
 #include "scene/contacts.h"
 #include "scene/gltf_nodes.h"
 #include "scene/input_error.h"
@@ -58,6 +59,7 @@ class SceneReader {
     scene_.cameras = ReadCameras(file_);
     if (scene_.faces.empty()) document_.Fail("the scene has no triangles");
     for (const auto& [mesh, counts] : dropped_) WarnOfDropped(mesh, counts);
+    ResolveCoincidentFaces(&scene_);
     WarnOfLostPrecision(&scene_, ContactOptions{}.distance);
     return std::move(scene_);
   }

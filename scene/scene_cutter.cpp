@@ -240,7 +240,8 @@ void SceneCutter::Rebuild() {
   scene_.faces = std::move(faces);
 }
 
-void SceneCutter::AppendPieces(uint32_t f, uint32_t first, const TriangleCutter& cutter, std::vector<Face>* faces) {
+void SceneCutter::AppendPieces(uint32_t f, uint32_t first, const TriangleCutter& cutter,
+                               std::vector<Face>* faces) {
   const Face face = scene_.faces[f];
   // Corner of this face where the first of its sheet has corner k.
   std::array<int, 3> corner{};

@@ -48,7 +48,8 @@ class SceneCutter {
   const std::vector<uint32_t>& origins() const { return origins_; }
 
  private:
-  /// What is to become of an edge, for all faces at it. Places along it are measured from its lower end, 0..1.
+  /// What is to become of an edge, for all faces at it. Places along it are measured from its lower end,
+  /// 0..1.
   struct EdgeCut {
     std::vector<double> wanted;                     // vertices
     std::vector<std::pair<double, double>> marked;  // parts that are lines
