@@ -220,6 +220,24 @@ TEST(GltfSceneTest, QuantisedAndSparsePositionsAreRead) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(GltfSceneTest, NormalsAgainstTheWindingAreToldOfOncePerMesh) {
+  GltfBuilder b;
+  const auto primitive = [&b](float first, float second, float z) {
+    return json{{"attributes",
+                 {{"POSITION", b.Floats({0, 0, z, 1, 0, z, 0, 1, z}, "VEC3")},
+                  {"NORMAL", b.Floats({0, 0, first, 0, 0, second, 0, 0.6f, 0.8f}, "VEC3")}}}};
+  };
+  const int some = b.Mesh(primitive(-1, 1, 0), "some"), none = b.Mesh(primitive(1, 1, 1), "none");
+  b.document()["meshes"][some]["primitives"].push_back(primitive(-1, -1, 2));
+  b.Node({{"mesh", some}});
+  b.Node({{"mesh", some}, {"scale", {-1, 1, 1}}, {"translation", {-1, 0, 0}}});  // mirrors both
+  b.Node({{"mesh", none}});
+  const Scene scene = ReadGltfScene(b.Write());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  ExpectWarning(scene, {"mesh 0 'some'", "the normals of 3 of 6 corners point behind their triangle"});
+  EXPECT_GT(scene.CornerNormal(scene.faces[0], 0).z(), 0) << "turned";
+}
+
 TEST(GltfSceneTest, InstancesAreSurfacesOfTheirOwn) {
   GltfBuilder b;
   const int mesh = b.TriangleMesh();
