@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/flat_triangle.h"
+
 namespace lobe {
 
 namespace {
@@ -23,30 +25,26 @@ std::vector<BoxTree::Item> Boxes(const Scene& scene, const EdgeTable& edges) {
   return items;
 }
 
-/// Cuts a - b off where its end values leave [low, high]. False: nothing is left.
-bool ClipToRange(double low, double high, double at_a, double at_b, double* t0, double* t1) {
-  const double change = at_b - at_a;
-  if (change == 0) return at_a >= low && at_a <= high;
-  double enter = (low - at_a) / change, leave = (high - at_a) / change;
-  if (enter > leave) std::swap(enter, leave);
-  *t0 = std::max(*t0, enter);
-  *t1 = std::min(*t1, leave);
-  return *t0 < *t1;
-}
-
 }  // namespace
 
-struct ContactFinder::Target {
+ContactReach ReachIn(const Scene& scene, double distance) {
+  const Eigen::AlignedBox3f bounds = scene.Bounds();
+  const double size = bounds.diagonal().cast<double>().norm();
+  const double farthest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
+  ContactReach reach;
+  // Transforms and modelling programs leave a few roundings.
+  reach.rounding = 4 * std::ldexp(farthest, -23);
+  // Clear of what the tessellation welds (scene/tessellate.cpp), too.
+  reach.snap = std::max(4 * reach.rounding, 2e-6 * size);
+  reach.distance = std::max(std::min(distance, 1e-3 * size), 2 * reach.rounding);
+  return reach;
+}
+
+struct ContactFinder::Target : FlatTriangle {
   uint32_t number;
   const Face& face;
   bool both_sides;
-  std::array<Vec3d, 3> corner;
-  Vec3d normal;
-  std::array<Vec3d, 3> inward;  // of edge k, unit, in the plane
-  double distance;
-
-  double Height(const Vec3d& p) const { return normal.dot(p - corner[0]); }
-  double Inside(int k, const Vec3d& p) const { return inward[k].dot(p - corner[k]); }
+  double distance = 0;
 };
 
 ContactFinder::ContactFinder(const Scene& scene, const EdgeTable& edges, const ContactReach& reach)
@@ -54,21 +52,13 @@ ContactFinder::ContactFinder(const Scene& scene, const EdgeTable& edges, const C
 
 std::vector<ContactLine> ContactFinder::LinesOn(uint32_t number, bool both_sides) const {
   const Face& face = scene_.faces[number];
-  Target target{number, face, both_sides, {}, {}, {}, 0};
-  for (int k = 0; k < 3; ++k) target.corner[k] = edges_.position(edges_.place(face.vertex[k])).cast<double>();
-  const auto& c = target.corner;
-  const Vec3d cross = (c[1] - c[0]).cross(c[2] - c[0]);
-  target.normal = cross.normalized();
-  double longest = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3d along = c[(k + 1) % 3] - c[k];
-    longest = std::max(longest, along.norm());
-    target.inward[k] = target.normal.cross(along).normalized();
-  }
+  std::array<Vec3d, 3> c;
+  for (int k = 0; k < 3; ++k) c[k] = edges_.position(edges_.place(face.vertex[k])).cast<double>();
+  Target target{FlatTriangle(c), number, face, both_sides};
   // Too thin for a cut inside to be anything but rounding.
-  if (cross.norm() / longest < 8 * reach_.snap) return {};
+  if (target.lowest < 8 * reach_.snap) return {};
   // What a small face is a part of is resolved by the mesh already.
-  target.distance = std::min(reach_.distance, std::max(longest / 4, reach_.rounding));
+  target.distance = std::min(reach_.distance, std::max(target.longest / 4, reach_.rounding));
 
   Eigen::AlignedBox3f box;
   for (const Vec3d& p : c) box.extend(p.cast<float>());
@@ -113,21 +103,10 @@ void ContactFinder::AddCrossing(const Target& target, const Face& other,
                                 std::vector<ContactLine>* lines) const {
   // What of the other face is over or under the target. Heights are asked for there only: far outside,
   // the target's plane is known badly.
-  std::array<Vec3d, 8> polygon, cut;
-  int count = 3;
-  for (int k = 0; k < 3; ++k) polygon[k] = scene_.positions[other.vertex[k]].cast<double>();
-  for (int side = 0; side < 3; ++side) {
-    int kept = 0;
-    for (int i = 0; i < count; ++i) {
-      const Vec3d &p = polygon[i], &q = polygon[(i + 1) % count];
-      const double at_p = target.Inside(side, p) + reach_.snap, at_q = target.Inside(side, q) + reach_.snap;
-      if (at_p >= 0) cut[kept++] = p;
-      if ((at_p < 0) != (at_q < 0)) cut[kept++] = p + (q - p) * (at_p / (at_p - at_q));
-    }
-    std::swap(polygon, cut);
-    count = kept;
-    if (count < 2) return;
-  }
+  std::array<Vec3d, 3> corners;
+  for (int k = 0; k < 3; ++k) corners[k] = scene_.positions[other.vertex[k]].cast<double>();
+  const auto [polygon, count] = target.PartOver(corners, reach_.snap);
+  if (count < 2) return;
   std::array<double, 8> height;
   for (int i = 0; i < count; ++i) height[i] = target.Height(polygon[i]);
   const auto [low, high] = std::minmax_element(height.begin(), height.begin() + count);
@@ -146,9 +125,7 @@ void ContactFinder::AddNearEdge(const Target& target, uint32_t edge, std::vector
   const auto& ends = edges_.ends(edge);
   const Vec3d a = edges_.position(ends[0]).cast<double>(), b = edges_.position(ends[1]).cast<double>();
   double begin = 0, end = 1;
-  for (int k = 0; k < 3; ++k) {
-    if (!ClipToRange(-reach_.snap, INFINITY, target.Inside(k, a), target.Inside(k, b), &begin, &end)) return;
-  }
+  if (!target.ClipSegment(a, b, reach_.snap, &begin, &end)) return;
   for (const double sign : {1.0, -1.0}) {
     if (sign < 0 && !target.both_sides) break;
     // Heights are taken over the target, as in AddCrossing.

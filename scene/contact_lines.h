@@ -21,6 +21,9 @@ struct ContactReach {
   double distance;  ///< what is nearer is taken to touch; at least `snap`
 };
 
+/// For a scene of this size; `distance` as asked for, but at most a thousandth of the scene.
+ContactReach ReachIn(const Scene& scene, double distance);
+
 /// Finds where other faces of a scene meet a face. Const methods may run in many threads.
 class ContactFinder {
  public:

@@ -4,9 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,422 +12,101 @@
 
 #include "scene/contact_lines.h"
 #include "scene/edge_table.h"
-#include "scene/line_chains.h"
 #include "scene/mesh.h"
-#include "scene/triangle_cutter.h"
+#include "scene/scene_cutter.h"
 
 namespace lobe {
 
 namespace {
 
-/// Faces that meet in an edge at less than 60 degrees between their shading normals may be one smooth surface
-/// to the tessellation, whatever its crease angle; beyond, no node is shared anyhow. (chosen)
-constexpr float kSmooth = 0.5f;
-
-/// Cuts leave angles below this only where others force them, radians. (chosen: bisection, which comes after,
-/// keeps half of it, and Delaunay refinement is sure to end up to 0.36)
-constexpr double kLeastAngle = 0.3;
-
-ContactReach Reach(const Scene& scene, const ContactOptions& options) {
-  const Eigen::AlignedBox3f bounds = scene.Bounds();
-  const double size = bounds.diagonal().cast<double>().norm();
-  const double farthest = std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-  ContactReach reach;
-  // Transforms and modelling programs leave a few roundings.
-  reach.rounding = 4 * std::ldexp(farthest, -23);
-  // Clear of what the tessellation welds (scene/tessellate.cpp), too.
-  reach.snap = std::max(4 * reach.rounding, 2e-6 * size);
-  reach.distance = std::max(std::min<double>(options.distance, 1e-3 * size), 2 * reach.rounding);
-  return reach;
+/// Is the back of one of the faces that repeat each other seen, or a front on either side?
+bool ShowsBothSides(const Scene& scene, const std::vector<uint32_t>& sheet) {
+  const Vec3 normal = scene.GeometricNormal(scene.faces[sheet[0]]);
+  return std::any_of(sheet.begin(), sheet.end(), [&](uint32_t f) {
+    const Face& face = scene.faces[f];
+    return scene.material(face).double_sided || scene.GeometricNormal(face).dot(normal) < 0;
+  });
 }
 
-/// What is to become of an edge, for all faces at it. Places along it are measured from its lower end, 0..1.
-struct EdgeCut {
-  std::vector<double> wanted;                     // vertices
-  std::vector<std::pair<double, double>> marked;  // parts that are contact lines
-  std::vector<Vec3> points;                       // settled: in order
-  std::vector<uint8_t> on_line;                   // of the parts between them
-};
+std::vector<std::vector<ContactLine>> FindLines(const SceneCutter& cutter) {
+  const auto& sheets = cutter.sheets();
+  const ContactFinder finder(cutter.scene(), cutter.edges(), cutter.reach());
+  std::vector<std::vector<ContactLine>> lines(sheets.size());
+  tbb::parallel_for(size_t{0}, sheets.size(), [&](size_t i) {
+    lines[i] = finder.LinesOn(sheets[i][0], ShowsBothSides(cutter.scene(), sheets[i]));
+  });
+  return lines;
+}
 
-/// Faces that repeat each other's corners are cut alike, or rays would no longer find them together.
-struct Sheet {
-  std::vector<uint32_t> faces;  // ascending; the first stands for all
-  bool both_sides = false;
-};
-
-class Cutting {
- public:
-  Cutting(Scene scene, const ContactOptions& options)
-      : scene_(std::move(scene)), options_(options), reach_(Reach(scene_, options)), edges_(scene_) {}
-
-  Scene Run(ContactReport* report) {
-    FindLines();
-    for (size_t i = 0; i < sheets_.size(); ++i) Prepare(i);
-    CutSheets();
-    if (cut_.empty()) return std::move(scene_);
-    Rebuild();
-    SplitLonelyEdges();
-    report_.crowded_faces = crowded_;
-    if (crowded_ > 0) {
-      scene_.warnings.push_back(std::to_string(crowded_) + (crowded_ == 1 ? " face is" : " faces are") +
-                                " touched by too many others: cut only along the longest " +
-                                std::to_string(options_.max_lines) + " lines of contact");
-    }
-    *report = report_;
-    return std::move(scene_);
-  }
-
- private:
-  Vec3d At(uint32_t place) const { return edges_.position(place).cast<double>(); }
-  uint32_t Place(uint32_t face, int k) const { return edges_.place(scene_.faces[face].vertex[k % 3]); }
-
-  void FindLines() {
-    for (uint32_t f = 0; f < scene_.faces.size(); ++f) {
-      if (!edges_.usable(f)) continue;
-      Sheet sheet;
-      for (const EdgeTable::Use& use : edges_.uses(edges_.edge(f, 0))) {
-        const Face& other = scene_.faces[use.face];
-        if (edges_.SharedPlaces(scene_.faces[f], other) < 3) continue;
-        sheet.faces.push_back(use.face);
-        sheet.both_sides |= scene_.material(other).double_sided ||
-                            scene_.GeometricNormal(other).dot(scene_.GeometricNormal(scene_.faces[f])) < 0;
-      }
-      if (sheet.faces[0] == f) sheets_.push_back(std::move(sheet));
-    }
-    const ContactFinder finder(scene_, edges_, reach_);
-    lines_.resize(sheets_.size());
-    tbb::parallel_for(size_t{0}, sheets_.size(), [&](size_t i) {
-      lines_[i] = finder.LinesOn(sheets_[i].faces[0], sheets_[i].both_sides);
-    });
-  }
-
-  /// Is the face, over its edge k, smoothly joined to another of its surface?
-  bool IsSmooth(uint32_t f, int k) const {
-    const Face& face = scene_.faces[f];
-    for (const EdgeTable::Use& use : edges_.uses(edges_.edge(f, k))) {
-      const Face& other = scene_.faces[use.face];
-      if (use.face == f || other.surface != face.surface || other.material != face.material) continue;
-      bool smooth = true;
-      for (int end = 0; end < 2; ++end) {
-        const int i = (k + end) % 3;
-        int j = use.k;
-        if (Place(use.face, j) != Place(f, i)) j = (j + 1) % 3;
-        smooth &= scene_.normals[face.vertex[i]].dot(scene_.normals[other.vertex[j]]) > kSmooth;
-      }
-      if (smooth) return true;
-    }
-    return false;
-  }
-
-  double AlongEdge(uint32_t edge, const Vec3d& p) const {
-    const Vec3d a = At(edges_.ends(edge)[0]), along = At(edges_.ends(edge)[1]) - a;
-    return std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  }
-
-  /// Sorts a sheet's lines into those along its edges and those through its inside, and tells its edges.
-  void Prepare(size_t i) {
-    if (lines_[i].empty()) return;
-    const uint32_t f = sheets_[i].faces[0];
-    const std::array<Vec3d, 3> c = {At(Place(f, 0)), At(Place(f, 1)), At(Place(f, 2))};
-    const Vec3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
-    std::array<Vec3d, 3> inward;
-    double longest = 0;
+/// A contact line of one edge that ends at both its ends separates nothing: the surface hangs together
+/// around each. With a vertex in its middle there are two there, one a side.
+void SplitLonelyEdges(Scene* cut) {
+  Scene& scene = *cut;
+  using Key = std::array<float, 6>;
+  const auto key = [&](const Face& face, int k) {
+    const Vec3 &a = scene.positions[face.vertex[k]], &b = scene.positions[face.vertex[(k + 1) % 3]];
+    const std::array<float, 3> p = {a.x() + 0.0f, a.y() + 0.0f, a.z() + 0.0f};
+    const std::array<float, 3> q = {b.x() + 0.0f, b.y() + 0.0f, b.z() + 0.0f};
+    const auto [low, high] = std::minmax(p, q);
+    return Key{low[0], low[1], low[2], high[0], high[1], high[2]};
+  };
+  const auto end = [](const Key& k, int i) { return std::array{k[3 * i], k[3 * i + 1], k[3 * i + 2]}; };
+  std::map<Key, bool> lonely;
+  std::map<std::array<float, 3>, int> lines_at;
+  for (const Face& face : scene.faces) {
     for (int k = 0; k < 3; ++k) {
-      inward[k] = normal.cross(c[(k + 1) % 3] - c[k]).normalized();
-      longest = std::max(longest, (c[(k + 1) % 3] - c[k]).norm());
-    }
-    std::vector<ContactLine> inside;
-    for (ContactLine line : lines_[i]) {
-      bool dropped = false;
-      for (int k = 0; k < 3 && !dropped; ++k) {
-        const double at_a = inward[k].dot(line.a - c[k]), at_b = inward[k].dot(line.b - c[k]);
-        if (std::max(at_a, at_b) <= reach_.snap) {
-          // Edges of neighbours that only leave from the same vertex are near for a short way, too.
-          const double length = (line.a - line.b).norm();
-          const bool parallel = std::abs(at_a - at_b) <= std::max(0.5 * reach_.rounding, 0.002 * length);
-          if (parallel && IsSmooth(f, k)) MarkEdge(edges_.edge(f, k), line);
-          dropped = true;
-        } else if (at_a < 0 || at_b < 0) {
-          // Exactly at the border, so that the neighbour's line goes on from there.
-          const Vec3d crossing = line.a + (line.b - line.a) * (at_a / (at_a - at_b));
-          (at_a < 0 ? line.a : line.b) = crossing;
-        }
-      }
-      if (!dropped && (line.a - line.b).norm() > reach_.snap) inside.push_back(line);
-    }
-    double tolerance = reach_.snap / 4;
-    const size_t most = static_cast<size_t>(std::max(options_.max_lines, 0));
-    inside = Straighten(inside, reach_.snap / 2, tolerance);
-    while (inside.size() > most && tolerance < 0.005 * longest) {
-      inside = Straighten(inside, reach_.snap / 2, tolerance *= 2);
-    }
-    if (inside.size() > most) {
-      ++crowded_;
-      std::stable_sort(inside.begin(), inside.end(), [](const ContactLine& a, const ContactLine& b) {
-        return (a.a - a.b).squaredNorm() > (b.a - b.b).squaredNorm();
-      });
-      inside.resize(most);
-    }
-    for (const ContactLine& line : inside) {
-      for (const Vec3d& p : {line.a, line.b}) {
-        for (int k = 0; k < 3; ++k) {
-          if (inward[k].dot(p - c[k]) <= reach_.snap) {
-            edge_cuts_[edges_.edge(f, k)].wanted.push_back(AlongEdge(edges_.edge(f, k), p));
-          }
-        }
-      }
-    }
-    lines_[i] = std::move(inside);
-    report_.lines += lines_[i].size();
-  }
-
-  void MarkEdge(uint32_t edge, const ContactLine& line) {
-    const auto [begin, end] = std::minmax({AlongEdge(edge, line.a), AlongEdge(edge, line.b)});
-    const double length = (At(edges_.ends(edge)[0]) - At(edges_.ends(edge)[1])).norm();
-    if ((end - begin) * length <= 4 * reach_.snap) return;
-    EdgeCut& cut = edge_cuts_[edge];
-    cut.marked.push_back({begin, end});
-    cut.wanted.insert(cut.wanted.end(), {begin, end});
-  }
-
-  /// Chooses an edge's vertices, clear of each other and of its ends.
-  void Settle(uint32_t edge, EdgeCut* cut) const {
-    const Vec3d a = At(edges_.ends(edge)[0]), along = At(edges_.ends(edge)[1]) - a;
-    const double clear = reach_.snap / along.norm();
-    std::sort(cut->wanted.begin(), cut->wanted.end());
-    std::vector<double> places = {0};
-    for (const double t : cut->wanted) {
-      if (t - places.back() > clear && t < 1 - clear) places.push_back(t);
-    }
-    places.push_back(1);
-    cut->points.clear();
-    cut->on_line.clear();
-    for (size_t i = 1; i < places.size(); ++i) {
-      const double middle = 0.5 * (places[i - 1] + places[i]);
-      cut->on_line.push_back(std::any_of(cut->marked.begin(), cut->marked.end(), [&](const auto& part) {
-        return part.first <= middle && middle <= part.second;
-      }));
-      if (i + 1 < places.size()) cut->points.push_back((a + places[i] * along).cast<float>());
+      if (face.contact >> k & 1) lonely[key(face, k)] = true;
     }
   }
-
-  /// Cuts, and again where a cut asked for a vertex on the border, until neighbours agree.
-  void CutSheets() {
-    // Every round but the first is for a few faces; the last takes what there is.
-    constexpr int kRounds = 6;
-    std::vector<size_t> sheet_of(scene_.faces.size(), kNone);
-    for (size_t i = 0; i < sheets_.size(); ++i) sheet_of[sheets_[i].faces[0]] = i;
-    std::vector<uint32_t> changed;
-    for (const auto& [edge, cut] : edge_cuts_) changed.push_back(edge);
-    std::vector<size_t> todo;
-    for (size_t i = 0; i < sheets_.size(); ++i) {
-      if (!lines_[i].empty()) todo.push_back(i);
-    }
-    for (int round = 0; round < kRounds; ++round) {
-      for (const uint32_t edge : changed) {
-        Settle(edge, &edge_cuts_[edge]);
-        for (const EdgeTable::Use& use : edges_.uses(edge)) {
-          if (sheet_of[use.face] != kNone) todo.push_back(sheet_of[use.face]);
-        }
-      }
-      std::sort(todo.begin(), todo.end());
-      todo.erase(std::unique(todo.begin(), todo.end()), todo.end());
-      for (const size_t i : todo) cut_.try_emplace(i);
-      tbb::parallel_for(size_t{0}, todo.size(), [&](size_t i) { cut_.at(todo[i]).emplace(Cut(todo[i])); });
-      changed.clear();
-      for (const size_t i : todo) {
-        const uint32_t f = sheets_[i].faces[0];
-        for (const TriangleCutter::Request& request : cut_.at(i)->requests()) {
-          const uint32_t edge = edges_.edge(f, request.edge);
-          const double t = Place(f, request.edge) == edges_.ends(edge)[0] ? request.t : 1 - request.t;
-          edge_cuts_[edge].wanted.push_back(t);
-          changed.push_back(edge);
-        }
-      }
-      todo.clear();
-      if (changed.empty()) break;
-    }
+  for (const auto& [edge, unused] : lonely) ++lines_at[end(edge, 0)], ++lines_at[end(edge, 1)];
+  bool any = false;
+  for (auto& [edge, is_lonely] : lonely) {
+    any |= is_lonely = lines_at[end(edge, 0)] == 1 && lines_at[end(edge, 1)] == 1;
   }
-
-  TriangleCutter Cut(size_t i) const {
-    const uint32_t f = sheets_[i].faces[0];
-    TriangleCutter cutter(scene_.Corners(scene_.faces[f]), reach_.snap);
-    for (int k = 0; k < 3; ++k) {
-      const uint32_t edge = edges_.edge(f, k);
-      const bool was_line = scene_.faces[f].contact >> k & 1;  // of a scene that has been cut before
-      const auto found = edge_cuts_.find(edge);
-      if (found == edge_cuts_.end()) {
-        cutter.CutBorder(k, {}, {was_line});
-        continue;
-      }
-      std::vector<Vec3> points = found->second.points;
-      std::vector<uint8_t> on_line = found->second.on_line;
-      if (Place(f, k) != edges_.ends(edge)[0]) {
-        std::reverse(points.begin(), points.end());
-        std::reverse(on_line.begin(), on_line.end());
-      }
-      if (was_line || !IsSmooth(f, k)) on_line.assign(on_line.size(), was_line);
-      cutter.CutBorder(k, points, on_line);
-    }
-    // Longest first: they meet the fewest others.
-    std::vector<ContactLine> lines = lines_[i];
-    std::stable_sort(lines.begin(), lines.end(), [](const ContactLine& a, const ContactLine& b) {
-      return (a.a - a.b).squaredNorm() > (b.a - b.b).squaredNorm();
-    });
-    for (const ContactLine& line : lines) cutter.CutAlong(line.a, line.b);
-    if (cutter.vertices().size() > 3) cutter.Fatten(kLeastAngle);
-    return cutter;
-  }
-
-  /// Puts the pieces of every cut face in its place.
-  void Rebuild() {
-    std::map<uint32_t, size_t> sheet_of;
-    for (const auto& [i, cutter] : cut_) {
-      for (const uint32_t f : sheets_[i].faces) sheet_of[f] = i;
-    }
-    std::vector<Face> faces;
-    faces.reserve(scene_.faces.size() + 4 * sheet_of.size());
-    auto next = sheet_of.begin();
-    for (uint32_t f = 0; f < scene_.faces.size(); ++f) {
-      if (next == sheet_of.end() || next->first != f) {
-        faces.push_back(scene_.faces[f]);
-        continue;
-      }
-      const size_t before = faces.size();
-      AppendPieces(f, sheets_[next->second].faces[0], *cut_.at(next->second), &faces);
-      if (faces.size() > before + 1) {
-        ++report_.faces_cut;
-        report_.pieces += faces.size() - before;
-      }
-      ++next;
-    }
-    scene_.faces = std::move(faces);
-  }
-
-  void AppendPieces(uint32_t f, uint32_t first, const TriangleCutter& cutter, std::vector<Face>* faces) {
-    const Face face = scene_.faces[f];
-    // Corner of this face where the first of its sheet has corner k.
-    std::array<int, 3> corner{};
-    for (int k = 0; k < 3; ++k) {
-      while (Place(f, corner[k]) != Place(first, k)) ++corner[k];
-    }
-    const bool turned = (corner[0] + 1) % 3 != corner[1];
-    std::vector<uint32_t> vertex;
-    for (uint32_t v = 0; v < cutter.vertices().size(); ++v) {
-      if (v < 3) {
-        vertex.push_back(face.vertex[corner[v]]);
-      } else {
-        const Vec3d w = cutter.Weights(v);
-        Vec3d normal = Vec3d::Zero();
-        int on = 0, opposite = 0;
-        for (int k = 0; k < 3; ++k) {
-          normal += w[k] * scene_.normals[face.vertex[corner[k]]].cast<double>();
-          if (v < cutter.border_end(k) && v >= cutter.border_begin(k)) on = 1, opposite = (k + 2) % 3;
-        }
-        if (!(normal.norm() > 1e-6)) normal = scene_.GeometricNormal(face).cast<double>();
-        const Vec3& p = cutter.vertices()[v];
-        const auto add = [&] {
-          scene_.positions.push_back(p);
-          scene_.normals.push_back(normal.normalized().cast<float>());
-          return static_cast<uint32_t>(scene_.positions.size() - 1);
-        };
-        if (!on) {
-          vertex.push_back(add());
-          continue;
-        }
-        // Faces that shared the edge's vertices share the new one.
-        const auto ends =
-            std::minmax(face.vertex[corner[(opposite + 1) % 3]], face.vertex[corner[(opposite + 2) % 3]]);
-        const auto key = std::tuple(ends.first, ends.second, p.x(), p.y(), p.z());
-        auto found = shared_.find(key);
-        if (found == shared_.end()) found = shared_.emplace(key, add()).first;
-        vertex.push_back(found->second);
-      }
-    }
-    for (const TriangleCutter::Piece& piece : cutter.Pieces()) {
-      Face part = face;
-      part.contact = piece.lines;
-      for (int k = 0; k < 3; ++k) part.vertex[k] = vertex[piece.vertex[k]];
-      if (turned) {
-        std::swap(part.vertex[1], part.vertex[2]);
-        part.contact = (piece.lines & 2) | (piece.lines & 1) << 2 | piece.lines >> 2;
-      }
-      faces->push_back(part);
-    }
-  }
-
-  /// A contact line of one edge that ends at both its ends separates nothing: the surface hangs together
-  /// around each. With a vertex in its middle there are two there, one a side.
-  void SplitLonelyEdges() {
-    using Key = std::array<float, 6>;
-    const auto key = [&](const Face& face, int k) {
-      const Vec3 &a = scene_.positions[face.vertex[k]], &b = scene_.positions[face.vertex[(k + 1) % 3]];
-      const std::array<float, 3> p = {a.x() + 0.0f, a.y() + 0.0f, a.z() + 0.0f};
-      const std::array<float, 3> q = {b.x() + 0.0f, b.y() + 0.0f, b.z() + 0.0f};
-      const auto [low, high] = std::minmax(p, q);
-      return Key{low[0], low[1], low[2], high[0], high[1], high[2]};
-    };
-    const auto end = [](const Key& k, int i) { return std::array{k[3 * i], k[3 * i + 1], k[3 * i + 2]}; };
-    std::map<Key, bool> lonely;
-    std::map<std::array<float, 3>, int> lines_at;
-    for (const Face& face : scene_.faces) {
+  if (!any) return;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
+  std::vector<Face> faces;
+  for (const Face& whole : scene.faces) {
+    std::vector<Face> parts = {whole};
+    for (size_t i = 0; i < parts.size(); ++i) {
       for (int k = 0; k < 3; ++k) {
-        if (face.contact >> k & 1) lonely[key(face, k)] = true;
-      }
-    }
-    for (const auto& [edge, unused] : lonely) ++lines_at[end(edge, 0)], ++lines_at[end(edge, 1)];
-    bool any = false;
-    for (auto& [edge, is_lonely] : lonely) {
-      any |= is_lonely = lines_at[end(edge, 0)] == 1 && lines_at[end(edge, 1)] == 1;
-    }
-    if (!any) return;
-    std::vector<Face> faces;
-    for (const Face& whole : scene_.faces) {
-      std::vector<Face> parts = {whole};
-      for (size_t i = 0; i < parts.size(); ++i) {
-        for (int k = 0; k < 3; ++k) {
-          const Face face = parts[i];
-          const auto found = lonely.find(key(face, k));
-          if (found == lonely.end() || !found->second) continue;
-          const uint32_t a = face.vertex[k], b = face.vertex[(k + 1) % 3], c = face.vertex[(k + 2) % 3];
-          const auto middle = std::minmax(a, b);
-          const Vec3 p = (scene_.positions[a] + scene_.positions[b]) * 0.5f;
-          const auto shared = std::tuple(middle.first, middle.second, p.x(), p.y(), p.z());
-          auto m = shared_.find(shared);
-          if (m == shared_.end()) {
-            scene_.positions.push_back(p);
-            scene_.normals.push_back((scene_.normals[a] + scene_.normals[b]).normalized());
-            m = shared_.emplace(shared, static_cast<uint32_t>(scene_.positions.size() - 1)).first;
-          }
-          // Bits of the edges a-b, b-c, c-a.
-          const uint32_t ab = face.contact >> k & 1, bc = face.contact >> (k + 1) % 3 & 1;
-          const uint32_t ca = face.contact >> (k + 2) % 3 & 1;
-          parts[i].vertex = {a, m->second, c};
-          parts[i].contact = ab | ca << 2;
-          Face second = face;
-          second.vertex = {m->second, b, c};
-          second.contact = ab | bc << 1;
-          parts.push_back(second);
-          k = -1;  // its corners are others now
+        const Face face = parts[i];
+        const auto found = lonely.find(key(face, k));
+        if (found == lonely.end() || !found->second) continue;
+        const uint32_t a = face.vertex[k], b = face.vertex[(k + 1) % 3], c = face.vertex[(k + 2) % 3];
+        const auto [middle, is_new] = middles.try_emplace(std::minmax(a, b));
+        if (is_new) {
+          middle->second = static_cast<uint32_t>(scene.positions.size());
+          scene.positions.push_back((scene.positions[a] + scene.positions[b]) * 0.5f);
+          scene.normals.push_back((scene.normals[a] + scene.normals[b]).normalized());
         }
+        const uint32_t m = middle->second;
+        // Bits of the edges a-b, b-c, c-a.
+        const uint32_t ab = face.contact >> k & 1, bc = face.contact >> (k + 1) % 3 & 1;
+        const uint32_t ca = face.contact >> (k + 2) % 3 & 1;
+        parts[i].vertex = {a, m, c};
+        parts[i].contact = ab | ca << 2;
+        Face second = face;
+        second.vertex = {m, b, c};
+        second.contact = ab | bc << 1;
+        parts.push_back(second);
+        k = -1;  // its corners are others now
       }
-      faces.insert(faces.end(), parts.begin(), parts.end());
     }
-    scene_.faces = std::move(faces);
+    faces.insert(faces.end(), parts.begin(), parts.end());
   }
+  scene.faces = std::move(faces);
+}
 
-  Scene scene_;
-  const ContactOptions& options_;
-  ContactReach reach_;
-  EdgeTable edges_;
-  std::vector<Sheet> sheets_;
-  std::vector<std::vector<ContactLine>> lines_;  // by sheet
-  std::map<uint32_t, EdgeCut> edge_cuts_;
-  std::map<size_t, std::optional<TriangleCutter>> cut_;                             // by sheet
-  std::map<std::tuple<uint32_t, uint32_t, float, float, float>, uint32_t> shared_;  // new vertices on edges
-  size_t crowded_ = 0;
-  ContactReport report_;
-};
+/// How many faces are no longer whole, and what has become of them.
+void CountPieces(const std::vector<uint32_t>& origins, ContactReport* report) {
+  for (size_t begin = 0, end = 0; begin < origins.size(); begin = end) {
+    while (end < origins.size() && origins[end] == origins[begin]) ++end;
+    if (end - begin == 1) continue;
+    ++report->faces_cut;
+    report->pieces += end - begin;
+  }
+}
 
 }  // namespace
 
@@ -438,7 +115,22 @@ Scene CutAlongContacts(Scene scene, const ContactOptions& options, ContactReport
   if (!report) report = &unused;
   *report = {};
   if (!(options.distance > 0) || scene.faces.empty()) return scene;
-  return Cutting(std::move(scene), options).Run(report);
+  const ContactReach reach = ReachIn(scene, options.distance);
+  SceneCutter cutter(std::move(scene), reach, static_cast<size_t>(std::max(options.max_lines, 0)));
+  if (!cutter.Cut(FindLines(cutter))) return cutter.Take();
+  cutter.Rebuild();
+  report->lines = cutter.lines();
+  report->crowded_faces = cutter.crowded();
+  CountPieces(cutter.origins(), report);
+  Scene cut = cutter.Take();
+  SplitLonelyEdges(&cut);
+  if (report->crowded_faces > 0) {
+    cut.warnings.push_back(std::to_string(report->crowded_faces) +
+                           (report->crowded_faces == 1 ? " face is" : " faces are") +
+                           " touched by too many others: cut only along the longest " +
+                           std::to_string(options.max_lines) + " lines of contact");
+  }
+  return cut;
 }
 
 }  // namespace lobe

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "scene/coincident_faces.h"
 #include "scene/contacts.h"
 #include "scene/gltf_nodes.h"
 #include "scene/input_error.h"
@@ -58,6 +59,7 @@ class SceneReader {
     scene_.cameras = ReadCameras(file_);
     if (scene_.faces.empty()) document_.Fail("the scene has no triangles");
     for (const auto& [mesh, counts] : dropped_) WarnOfDropped(mesh, counts);
+    ResolveCoincidentFaces(&scene_);
     WarnOfLostPrecision(&scene_, ContactOptions{}.distance);
     return std::move(scene_);
   }
@@ -65,6 +67,7 @@ class SceneReader {
  private:
   struct Dropped {
     size_t zero_area = 0, bad_normals = 0;
+    size_t corners = 0, turned_normals = 0;  // of the mesh, however often it is placed
   };
 
   void Warn(const std::string& sentence) { scene_.warnings.push_back(sentence); }
@@ -110,6 +113,12 @@ class SceneReader {
     if (counts.bad_normals > 0) {
       Warn(name + ": " + std::to_string(counts.bad_normals) +
            " corners have a normal that is zero or not finite; the triangle's own is used");
+    }
+    if (counts.turned_normals > 0) {
+      Warn(name + ": the normals of " + std::to_string(counts.turned_normals) + " of " +
+           std::to_string(counts.corners) +
+           " corners point behind their triangle, against its winding; they are turned to its front: "
+           "recalculate them, or turn the triangles");
     }
   }
 
@@ -173,6 +182,25 @@ class SceneReader {
     return true;
   }
 
+  /// As Scene::CornerNormal will turn them.
+  void CountTurnedNormals(const Primitive& primitive, int mesh) {
+    if (primitive.normals.empty()) return;
+    const auto at = [](const std::vector<float>& xyz, uint32_t i) {
+      return Eigen::Map<const Vec3>(&xyz[3 * i]);
+    };
+    size_t turned = 0;
+    for (const Triangle& t : primitive.triangles) {
+      const Vec3 p = at(primitive.positions, t[0]);
+      const Vec3 front = (at(primitive.positions, t[1]) - p).cross(at(primitive.positions, t[2]) - p);
+      for (const uint32_t v : t) {
+        const auto normal = at(primitive.normals, v);
+        turned += normal.dot(front) < -Scene::kGrazing * normal.norm() * front.norm();
+      }
+    }
+    dropped_[mesh].turned_normals += turned;
+    dropped_[mesh].corners += 3 * primitive.triangles.size();
+  }
+
   /// Reads each mesh once, however often it is placed.
   const std::vector<Primitive>& ReadMesh(int mesh) {
     const auto [found, is_new] = meshes_.try_emplace(mesh);
@@ -181,6 +209,7 @@ class SceneReader {
       for (size_t i = 0; i < json.Count("primitives"); ++i) {
         Primitive primitive;
         if (ReadPrimitive(json.Entry("primitives", i, "primitive"), &primitive)) {
+          CountTurnedNormals(primitive, mesh);
           found->second.push_back(std::move(primitive));
         }
       }

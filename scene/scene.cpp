@@ -19,7 +19,6 @@ Vec3d Cross(const std::array<Vec3, 3>& p) {
 Vec3 Scene::GeometricNormal(const Face& f) const { return Cross(Corners(f)).normalized().cast<float>(); }
 
 Vec3 Scene::CornerNormal(const Face& f, int corner) const {
-  constexpr float kGrazing = 1e-3f;  // chosen
   const Vec3 geometric = GeometricNormal(f);
   const Vec3& normal = normals[f.vertex[corner]];
   const float cosine = normal.dot(geometric);

@@ -65,9 +65,10 @@ struct Scene {
   std::array<Vec3, 3> Corners(const Face& f) const {
     return {positions[f.vertex[0]], positions[f.vertex[1]], positions[f.vertex[2]]};
   }
+  static constexpr float kGrazing = 1e-3f;    ///< (chosen)
   Vec3 GeometricNormal(const Face& f) const;  ///< unit
   /// Shading normal at a corner (0..2) of a face, on the front: one that points behind the face is turned,
-  /// one that lies in its plane replaced by the geometric normal.
+  /// one that lies in its plane (cosine below kGrazing) replaced by the geometric normal.
   Vec3 CornerNormal(const Face& f, int corner) const;
   float Area(const Face& f) const;
   Eigen::AlignedBox3f Bounds() const;

@@ -18,6 +18,7 @@
 #include "scene/specular.h"
 #include "solver/hash.h"
 #include "solver/links.h"
+#include "solver/random_points.h"
 
 namespace lobe {
 namespace {
@@ -26,16 +27,6 @@ constexpr int kWalksPerRound = 4096, kMaxRounds = 64, kMaxBounces = 24;
 
 // Rays aimed at a side that walks have not met (chosen): what one in twenty can see is missed once in 5e5.
 constexpr int kAimedRays = 256;
-
-Vec3 CosineDirection(float u, float v) {
-  const float r = std::sqrt(u), phi = 2.0f * std::numbers::pi_v<float> * v;
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1.0f - u))};
-}
-
-Vec3 PointOnTriangle(const std::array<Vec3, 3>& p, float u, float v) {
-  const float s = std::sqrt(u);
-  return p[0] * (1 - s) + p[1] * (s * (1 - v)) + p[2] * (s * v);
-}
 
 // Faces of one surface that share positions hang together, but not across contact lines: light may fall on
 // one side of those only. Where a line touches a position, faces must share an edge that is none. A line is

@@ -19,6 +19,7 @@
 #include "solver/coarse_transport.h"
 #include "solver/exposure.h"
 #include "solver/hash.h"
+#include "solver/lamp_aim.h"
 #include "solver/link_gather.h"
 #include "solver/link_resolution.h"
 #include "solver/links.h"
@@ -154,6 +155,7 @@ class ProgressiveSolver {
     try {
       const auto poll = [this] { StopIfTold(); };
       const auto lit = FindLitSides(s_.scene, tracer_, s_.options.seed, poll);
+      WarnOfLampsInsideOut(&s_.scene, tracer_, s_.options.seed);
       PrepareMaterials();
       const MeshCounts expected = ExpectCounts(s_.scene, lit, s_.options.mesh.max_edge);
       RequireMemory(control_.max_memory, s_.scene, lit, expected, materials_, s_.options);

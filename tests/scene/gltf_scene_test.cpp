@@ -146,7 +146,7 @@ TEST(GltfSceneTest, NegativeScaleMirrorsButKeepsTheFront) {
   b.Node({{"mesh", mesh}, {"scale", {-1, 1, 1}}});
   b.Node({{"mesh", mesh}, {"scale", {1, 1, -2}}});
   b.Node({{"mesh", mesh}, {"scale", {-1, -1, -1}}});
-  b.Node({{"mesh", mesh}, {"scale", {-2, -1, 1}}});
+  b.Node({{"mesh", mesh}, {"scale", {-2, -1, 1}}, {"translation", {0, 0, 5}}});
   const Scene scene = ReadGltfScene(b.Write());
   ASSERT_EQ(scene.faces.size(), 4u);
   // The mirror image of a triangle facing +z faces +z if x is mirrored, -z if z is.
@@ -189,12 +189,14 @@ TEST(GltfSceneTest, IndicesOfEveryWidthAndNone) {
   for (const json& indices : {json(bytes), json(shorts), json(b.Uints({0, 1, 2})), json()}) {
     json primitive = {{"attributes", {{"POSITION", positions}}}};
     if (!indices.is_null()) primitive["indices"] = indices;
-    b.Node({{"mesh", b.Mesh(primitive)}});
+    b.Node({{"mesh", b.Mesh(primitive)}, {"translation", {0, 0, b.document()["meshes"].size()}}});
   }
   const Scene scene = ReadGltfScene(b.Write());
   ASSERT_EQ(scene.faces.size(), 4u);
-  for (const Face& f : scene.faces) {
-    EXPECT_EQ(scene.Corners(f), scene.Corners(scene.faces[0]));
+  for (int i = 0; i < 4; ++i) {
+    const float z = float(i + 1);
+    EXPECT_EQ(scene.Corners(scene.faces[i]),
+              (std::array<Vec3, 3>{Vec3(0, 0, z), Vec3(1, 0, z), Vec3(0, 1, z)}));
   }
 }
 
@@ -212,16 +214,35 @@ TEST(GltfSceneTest, QuantisedAndSparsePositionsAreRead) {
       {"count", 1},
       {"indices", {{"bufferView", index}, {"componentType", 5121}}},
       {"values", {{"bufferView", value}}}};
-  b.Node({{"mesh", b.Mesh({{"attributes", {{"POSITION", sparse}}}})}});
+  b.Node({{"mesh", b.Mesh({{"attributes", {{"POSITION", sparse}}}})}, {"translation", {0, 0, 3}}});
   const Scene scene = ReadGltfScene(b.Write());
-  EXPECT_EQ(Corners(scene), (std::vector<float>{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  EXPECT_EQ(Corners(scene), (std::vector<float>{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 3, 1, 0, 3, 0, 1, 3}));
   EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfSceneTest, NormalsAgainstTheWindingAreToldOfOncePerMesh) {
+  GltfBuilder b;
+  const auto primitive = [&b](float first, float second, float z) {
+    return json{{"attributes",
+                 {{"POSITION", b.Floats({0, 0, z, 1, 0, z, 0, 1, z}, "VEC3")},
+                  {"NORMAL", b.Floats({0, 0, first, 0, 0, second, 0, 0.6f, 0.8f}, "VEC3")}}}};
+  };
+  const int some = b.Mesh(primitive(-1, 1, 0), "some"), none = b.Mesh(primitive(1, 1, 1), "none");
+  b.document()["meshes"][some]["primitives"].push_back(primitive(-1, -1, 2));
+  b.Node({{"mesh", some}});
+  b.Node({{"mesh", some}, {"scale", {-1, 1, 1}}, {"translation", {-1, 0, 0}}});  // mirrors both
+  b.Node({{"mesh", none}});
+  const Scene scene = ReadGltfScene(b.Write());
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  ExpectWarning(scene, {"mesh 0 'some'", "the normals of 3 of 6 corners point behind their triangle"});
+  EXPECT_GT(scene.CornerNormal(scene.faces[0], 0).z(), 0) << "turned";
 }
 
 TEST(GltfSceneTest, InstancesAreSurfacesOfTheirOwn) {
   GltfBuilder b;
   const int mesh = b.TriangleMesh();
-  b.document()["meshes"][mesh]["primitives"].push_back(b.document()["meshes"][mesh]["primitives"][0]);
+  const int above = b.Floats({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3");
+  b.document()["meshes"][mesh]["primitives"].push_back({{"attributes", {{"POSITION", above}}}});
   b.Node({{"mesh", mesh}, {"name", "left"}});
   b.Node({{"mesh", mesh}, {"translation", {5, 0, 0}}});
   const Scene scene = ReadGltfScene(b.Write());
@@ -377,7 +398,8 @@ TEST(GltfSceneTest, WhatIsNotReadIsNamed) {
   d["meshes"][mesh]["primitives"].push_back({{"attributes", {{"POSITION", positions}}}, {"mode", 1}});
   d["meshes"][mesh]["primitives"].push_back({{"attributes", json::object()}});
   d["meshes"][mesh]["primitives"].push_back(
-      {{"attributes", {{"POSITION", positions}}}, {"indices", b.Uints({0, 1, 2, 0})}});
+      {{"attributes", {{"POSITION", b.Floats({0, 0, 1, 1, 0, 1, 0, 1, 1}, "VEC3")}}},
+       {"indices", b.Uints({0, 1, 2, 0})}});
   b.Node({{"mesh", mesh}, {"name", "moving"}, {"skin", 0}, {"camera", 0}});
   d["cameras"] = {{{"type", "orthographic"}, {"name", "plan"}, {"orthographic", json::object()}}};
   d["animations"] = {json::object()};
@@ -436,7 +458,7 @@ TEST(GltfMaterialTest, PrimitivesWithoutMaterialGetTheDefaultOne) {
   const int mesh = b.TriangleMesh();
   b.document()["materials"] = {{{"name", "own"}}};
   b.Node({{"mesh", mesh}});
-  b.Node({{"mesh", mesh}});
+  b.Node({{"mesh", mesh}, {"translation", {0, 0, 1}}});
   const Scene two = ReadGltfScene(b.Write());
   ASSERT_EQ(two.materials.size(), 2u);
   EXPECT_EQ(two.faces[0].material, 1u);
