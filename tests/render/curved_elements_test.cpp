@@ -97,7 +97,7 @@ TEST(CurvedElementsTest, MetalBallsOfAnyFacetsShowInAutoWhatTracingShows) {
     for (const int segments : {3, 6, 12, 24}) {
       const Solution s = Solved(Ball(Metal(roughness), segments));
       const Image a = Picture(s, kGatherMode, 16, 2, 16), b = Picture(s, kGatherMode, 16, 3, 16);
-      const double error = Compare(Picture(s, kAutoMode, 16, 1), a, &b, nullptr).block_error;
+      const double error = Compare(Picture(s, kAutoMode, 16, 1, 16), a, &b, nullptr).block_error;
       EXPECT_LT(error, 0.02) << "roughness " << roughness << ", " << 2 * segments << " facets";
     }
   }
