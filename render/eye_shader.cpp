@@ -39,11 +39,12 @@ struct EyeShader::Task {
 };
 
 EyeShader::EyeShader(const Solution& solution)
-    : solution_(solution), paths_(solution.scene), stored_(solution) {
+    : solution_(solution), paths_(solution.scene), stored_(solution), curved_(FindCurvedElements(solution)) {
   for (uint32_t m = 0; m < solution.scene.materials.size(); ++m) gloss_.push_back(paths_.sampler(m).Gloss());
 }
 
-EyeShader::Reading EyeShader::ReadingOf(uint32_t material, const RenderOptions& options) const {
+EyeShader::Reading EyeShader::ReadingOf(uint32_t material, uint32_t element,
+                                        const RenderOptions& options) const {
   const GlossKind kind = solution_.material_kinds[material];
   switch (options.mode) {
     case RenderMode::kStored:
@@ -54,7 +55,11 @@ EyeShader::Reading EyeShader::ReadingOf(uint32_t material, const RenderOptions& 
       if (options.gather_base) return Reading::kGatherAll;
       return kind == GlossKind::kLobe || kind == GlossKind::kSharp ? Reading::kGather : Reading::kStored;
     case RenderMode::kAuto:
-      return kind == GlossKind::kSharp ? Reading::kGather : Reading::kStored;
+      if (kind == GlossKind::kSharp) return Reading::kGather;
+      if (curved_.empty() || element == kNone) return Reading::kStored;
+      return curved_[element] == NotStored::kGloss           ? Reading::kGather
+             : curved_[element] == NotStored::kStraightLight ? Reading::kDirect
+                                                             : Reading::kStored;
   }
   return Reading::kStored;
 }
@@ -136,7 +141,7 @@ void EyeShader::Surface(const Ray& ray, const RayHit& hit, const Way& way, Task&
   const auto sample = [&](const ReflectanceSampler& sampler, int samples, bool gather) {
     if (!sampler.black()) Sample(paths_.VertexAt(hit, wo), sampler, samples, gather, way, task);
   };
-  switch (way.gathered ? Reading::kStored : ReadingOf(material, task.options)) {
+  switch (way.gathered ? Reading::kStored : ReadingOf(material, where.element, task.options)) {
     case Reading::kStored: {
       const Rgb direct =
           task.split && !way.gathered ? stored_.Direct(where, wo, basis).max(0.0f) : Rgb(Rgb::Zero());
@@ -146,7 +151,9 @@ void EyeShader::Surface(const Ray& ray, const RayHit& hit, const Way& way, Task&
     case Reading::kDirect: {
       const Rgb total = stored_.Total(where, wo, basis);
       Show(total - stored_.Direct(where, wo, basis), Rgb::Zero(), way, task);
-      sample(surface.sampler, task.options.light_samples, /*gather=*/false);
+      const bool few_places = task.options.mode == RenderMode::kAuto;
+      sample(surface.sampler, few_places ? task.options.gather_samples : task.options.light_samples,
+             /*gather=*/false);
       break;
     }
     case Reading::kGather: {

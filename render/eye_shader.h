@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/curved_elements.h"
 #include "render/lobe_lookup.h"
 #include "render/path_scene.h"
 #include "render/renderer.h"
@@ -57,7 +58,10 @@ class EyeShader {
     kGather,     ///< gloss is traced until it meets lobes, the base is read
     kGatherAll,  ///< the base is traced, too
   };
-  Reading ReadingOf(uint32_t material, const RenderOptions& options) const;
+  /// On `element`, or on elements that are not curved (kNone).
+  Reading ReadingOf(uint32_t material, uint32_t element, const RenderOptions& options) const;
+  /// Elements of curved surfaces whose light mode auto does not read alone; may be empty.
+  const std::vector<NotStored>& curved() const { return curved_; }
 
   const PathScene& paths() const { return paths_; }
   const LobeLookup& stored() const { return stored_; }
@@ -76,6 +80,7 @@ class EyeShader {
   PathScene paths_;
   LobeLookup stored_;
   std::vector<ReflectanceSampler> gloss_;  // by material
+  std::vector<NotStored> curved_;          // by element, or empty
 };
 
 }  // namespace lobe

@@ -82,6 +82,7 @@ struct PacketLight::State {
   const Solution& solution;
   const ElementLocator& locator;
   const std::vector<uint8_t>& handled;
+  const std::span<const uint8_t> except;
   LobeLanes lanes;
   FilmGrid grid;
   std::vector<Place> places{kPlaces};
@@ -97,8 +98,8 @@ struct PacketLight::State {
   double clamped = 0;
   Counts counts;
 
-  State(const Solution& s, const ElementLocator& l, const std::vector<uint8_t>& h)
-      : solution(s), locator(l), handled(h), lanes(s.total.max_degree()) {
+  State(const Solution& s, const ElementLocator& l, const std::vector<uint8_t>& h, std::span<const uint8_t> e)
+      : solution(s), locator(l), handled(h), except(e), lanes(s.total.max_degree()) {
     Forget();
   }
 
@@ -129,6 +130,11 @@ const Place& PacketLight::State::Find(uint32_t face_side, float u, float v) {
   place.key = key;
   place.face_side = face_side;
   if (!here) return place;
+  if (element && !except.empty() && except[leaf->element]) {
+    std::copy_n(leaf->w0.data(), 3, place.w0);
+    std::copy_n(leaf->w1.data(), 3, place.w1);
+    return place;
+  }
   place.kind = Kind::kLinear;
   const Material& material = solution.scene.materials[face.material];
   const bool front = Side(face_side % 2) == Side::kFront;
@@ -305,8 +311,8 @@ LOBE_INLINE uint32_t ReadLanes(State& state, const EyePacket& rays, const Packet
 }  // namespace
 
 PacketLight::PacketLight(const Solution& solution, const ElementLocator& locator,
-                         const std::vector<uint8_t>& handled)
-    : state_(std::make_unique<State>(solution, locator, handled)) {}
+                         const std::vector<uint8_t>& handled, std::span<const uint8_t> except)
+    : state_(std::make_unique<State>(solution, locator, handled, except)) {}
 PacketLight::~PacketLight() = default;
 PacketLight::PacketLight(PacketLight&&) noexcept = default;
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "render/eye_rays.h"
@@ -29,9 +30,10 @@ namespace lobe {
 /// Start.
 class PacketLight {
  public:
-  /// `handled[2 * material + side]`: 1 if light of that side of the material is read here. References are
-  /// kept.
-  PacketLight(const Solution& solution, const ElementLocator& locator, const std::vector<uint8_t>& handled);
+  /// `handled[2 * material + side]`: 1 if light of that side of the material is read here; `except[element]`:
+  /// 1 if that of the element is not all the same; empty: none such. References are kept.
+  PacketLight(const Solution& solution, const ElementLocator& locator, const std::vector<uint8_t>& handled,
+              std::span<const uint8_t> except = {});
   ~PacketLight();
   PacketLight(PacketLight&&) noexcept;
 

@@ -65,9 +65,17 @@ struct Renderer::Impl {
     std::vector<uint8_t> out;
     for (uint32_t m = 0; m < solution.scene.materials.size(); ++m) {
       const bool stored = shader.paths().specular().kind(m) == SpecularSurfaces::Kind::kNone &&
-                          shader.ReadingOf(m, options) == EyeShader::Reading::kStored;
+                          shader.ReadingOf(m, kNone, options) == EyeShader::Reading::kStored;
       out.insert(out.end(), 2, stored);
     }
+    return out;
+  }
+
+  // Elements on such sides that are not.
+  std::vector<uint8_t> NotReadFromLobes(const RenderOptions& options) const {
+    std::vector<uint8_t> out;
+    if (options.mode != RenderMode::kAuto) return out;
+    for (const NotStored what : shader.curved()) out.push_back(what != NotStored::kNothing);
     return out;
   }
 
@@ -166,7 +174,7 @@ LayeredImage Renderer::Render(const CameraView& view, const RenderOptions& optio
   LayeredImage image(window.width(), window.height(), wanted);
 
   const TileRenderer tiles(impl_->solution, tracer(), impl_->shader.stored().locator(),
-                           impl_->ReadFromLobes(options));
+                           impl_->ReadFromLobes(options), impl_->NotReadFromLobes(options));
   const int side = wanted.empty() ? tiles.TileSide(eye_rays, options.width, options.height) : kSmallTile;
   tbb::enumerable_thread_specific<Impl::Scratch> scratches;
   std::vector<Impl::Sums> sums(TileCount(options, side));

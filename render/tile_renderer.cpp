@@ -34,21 +34,23 @@ void Fold(int pixels, float* sum) {
 struct TileRenderer::Impl {
   const RayTracer& tracer;
   const ElementLocator& locator;
-  const std::vector<uint8_t> handled;
+  const std::vector<uint8_t> handled, except;
   const int l_max;
   tbb::enumerable_thread_specific<PacketLight> lights;
 
-  Impl(const Solution& solution, const RayTracer& t, const ElementLocator& l, std::vector<uint8_t> h)
+  Impl(const Solution& solution, const RayTracer& t, const ElementLocator& l, std::vector<uint8_t> h,
+       std::vector<uint8_t> e)
       : tracer(t),
         locator(l),
         handled(std::move(h)),
+        except(std::move(e)),
         l_max(solution.total.max_degree()),
-        lights([this, &solution] { return PacketLight(solution, locator, handled); }) {}
+        lights([this, &solution] { return PacketLight(solution, locator, handled, except); }) {}
 };
 
 TileRenderer::TileRenderer(const Solution& solution, const RayTracer& tracer, const ElementLocator& locator,
-                           std::vector<uint8_t> handled)
-    : impl_(std::make_unique<Impl>(solution, tracer, locator, std::move(handled))) {}
+                           std::vector<uint8_t> handled, std::vector<uint8_t> except)
+    : impl_(std::make_unique<Impl>(solution, tracer, locator, std::move(handled), std::move(except))) {}
 TileRenderer::~TileRenderer() = default;
 
 int TileRenderer::TileSide(const EyeRays& eye_rays, int width, int height) const {

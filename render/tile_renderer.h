@@ -18,10 +18,10 @@ namespace lobe {
 class TileRenderer {
  public:
   /// `handled[2 * material + side]`: 1 where what the eye sees is the light stored on that side, plus the
-  /// material's emission. The solution, the tracer of its scene and the locator of its mesh must outlive
-  /// this.
+  /// material's emission; `except[element]`: 1 for elements where it is not; empty: none. The solution, the
+  /// tracer of its scene and the locator of its mesh must outlive this.
   TileRenderer(const Solution& solution, const RayTracer& tracer, const ElementLocator& locator,
-               std::vector<uint8_t> handled);
+               std::vector<uint8_t> handled, std::vector<uint8_t> except = {});
   ~TileRenderer();
 
   /// Radiance along an eye ray that hit something not handled: a sample of pixel (x, y).
