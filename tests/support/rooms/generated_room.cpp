@@ -91,8 +91,8 @@ float Worth(const Scene& scene, const RayTracer& tracer, const Camera& camera, f
 Camera FindCamera(const Scene& scene, const Furniture& furniture, const Vec3& inside, RandomChoice& random) {
   const RayTracer tracer(scene);
   Camera best;
-  float most = -2;
-  for (int found = 0, tried = 0; found < 12 && tried < 400; ++tried) {
+  float most = 0;
+  for (int found = 0, tried = 0; found < 12 && (tried < 400 || found == 0); ++tried) {
     const auto at = [&](float margin, float low, float high) {
       const Vec3 h = inside / 2 - Vec3::Constant(margin);
       return Vec3{random.Between(-h.x(), h.x()), inside.y() * random.Between(low, high),
@@ -147,7 +147,7 @@ GeneratedRoom::GeneratedRoom(uint64_t seed_in) : seed(seed_in) {
   lamps_seen_directly = lamps.all_seen_directly();
   for (int i = 0; i < plan.things; ++i) furniture.AddThing(plan.roughness);
   if (random.Chance(0.1f)) furniture.AddMirror();
-  if (random.Chance(0.1f)) furniture.AddPane();
+  if (!plan.steel && random.Chance(0.1f)) furniture.AddPane();
   if (random.Chance(0.06f)) furniture.AddGlassBody();
 
   features.insert(lamps.features().begin(), lamps.features().end());

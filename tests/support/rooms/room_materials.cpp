@@ -37,7 +37,9 @@ Rgb DrawColour(RandomChoice& random, float brightest) {
 float DrawAlbedo(RandomChoice& random) { return random.Between(0.15f, 0.95f); }
 
 DrawnReflectance DrawReflectance(RandomChoice& random, const RoughnessRange& range, float albedo) {
-  const float roughness = random.Between(range.least, range.most);
+  // Sharp ones as often as rough ones, where both may be.
+  const float roughness = random.Chance(0.5f) ? random.Between(range.least, range.most)
+                                              : random.LogBetween(range.least, range.most);
   const float alpha = std::clamp(roughness * roughness, kLeastSlope, 1.0f);
   const Rgb colour = DrawColour(random, albedo);
   switch (random.Whole(0, 9)) {

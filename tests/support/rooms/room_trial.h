@@ -46,13 +46,17 @@ struct ViewFigures {
   bool resolved = false;                         ///< did the path tracer come to the noise asked for?
   double picture_seconds = 0, path_seconds = 0;  ///< CPU
   Image picture, reference;
+  Mask mask;
+  double reference_mean = 0;  ///< of what is not masked
 };
 
-/// A room solved with the defaults, by plain sweeps, and path traced.
+/// A room solved with the defaults, by plain sweeps, and path traced. Plain sweeps go on until it is known
+/// whether the bound on steps holds; to their end if the solve did not converge.
 struct RoomTrial {
   explicit RoomTrial(const GeneratedRoom& room, const TrialOptions& options = {});
 
-  Run solve, plain;
+  Run solve;
+  Run plain;  ///< of 0 steps if not needed
   size_t nodes = 0;
   double imbalance = 0;
   std::vector<std::string> warnings;
