@@ -85,7 +85,29 @@ double NoiseOfBlockError(double error, double noise, double blocks) {
   return error > 0 ? std::min(of_square / (2 * error), std::sqrt(of_square)) : std::sqrt(of_square);
 }
 
-ViewFigures LookAtView(const Solution& solution, const Scene& scene, const TrialOptions& options) {
+/// Takes the figures from the two halves. `block_bound_holds`: is the block error to be told from
+/// kBlockBound?
+void ReadFigures(const PathTracedHalves& halves, const TrialOptions& options, bool block_bound_holds,
+                 ViewFigures* out) {
+  const Image a = halves.Half(0), b = halves.Half(1);
+  const Comparison comparison = Compare(out->picture, a, &b, &out->mask);
+  constexpr double kPixelsOfBlock = 64;
+  out->passes = halves.passes();
+  out->bias = comparison.bias;
+  out->bias_noise = halves.MeanNoise();
+  out->block_error = comparison.block_error;
+  out->block_error_noise = NoiseOfBlockError(comparison.block_error, *comparison.reference_block_noise,
+                                             double(comparison.pixels) / kPixelsOfBlock);
+  out->reference = MiddleOf(a, &b);
+  out->reference_mean = comparison.reference_mean;
+  const bool blocks_told =
+      !block_bound_holds || out->block_error_noise < options.block_error_noise ||
+      std::abs(out->block_error - kBlockBound) > kStandardErrors * out->block_error_noise;
+  out->resolved = blocks_told && out->bias_noise < options.mean_noise;
+}
+
+ViewFigures LookAtView(const Solution& solution, const Scene& scene, const TrialOptions& options,
+                       bool block_bound_holds) {
   RenderOptions render;
   render.width = render.height = options.size;
   render.samples_per_pixel = options.samples;
@@ -99,27 +121,13 @@ ViewFigures LookAtView(const Solution& solution, const Scene& scene, const Trial
   const Stopwatch path_time;
   out.mask = EmitterMask(scene, RayTracer(scene), view, render);
   PathTracedHalves halves(scene, view, render, out.mask);
-  Image a, b;
-  Comparison comparison;
-  double unmasked = 0;
-  for (const bool masked : out.mask.set) unmasked += !masked;
   while (halves.passes() < options.most_passes && !out.resolved) {
-    halves.AddPass();
-    if (halves.passes() < options.least_passes || halves.passes() % 4 != 0) continue;
-    a = halves.Half(0), b = halves.Half(1);
-    comparison = Compare(out.picture, a, &b, &out.mask);
-    out.resolved =
-        halves.MeanNoise() < options.mean_noise && *comparison.reference_block_noise < options.block_noise;
+    do {
+      halves.AddPass();
+    } while (halves.passes() < options.least_passes || halves.passes() % 4 != 0);
+    ReadFigures(halves, options, block_bound_holds, &out);
   }
   out.path_seconds = path_time.seconds();
-  out.passes = halves.passes();
-  out.bias = comparison.bias;
-  out.bias_noise = halves.MeanNoise();
-  out.block_error = comparison.block_error;
-  out.block_error_noise =
-      NoiseOfBlockError(out.block_error, *comparison.reference_block_noise, unmasked / 64);
-  out.reference = MiddleOf(a, &b);
-  out.reference_mean = comparison.reference_mean;
   return out;
 }
 
@@ -150,7 +158,7 @@ RoomTrial::RoomTrial(const GeneratedRoom& room, const TrialOptions& options)
     plain = RunOf(plain_solution, plain_time.seconds());
   }
 
-  if (solve.converged()) view = LookAtView(solution, room.scene, options);
+  if (solve.converged()) view = LookAtView(solution, room.scene, options, block_bound_holds);
 }
 
 std::vector<std::string> RoomTrial::Failures() const {

@@ -15,9 +15,10 @@ namespace lobe::test {
 struct TrialOptions {
   int size = 96;     ///< pixels of the square view, each way
   int samples = 16;  ///< eye rays a pixel of the solution's view, and of a pass of the path tracer
-  /// The path tracer goes on until the standard error of its mean is below the first, and the rms noise of 8
-  /// x 8 blocks of half its passes below the second; at most so many passes.
-  double mean_noise = 0.004, block_noise = 0.04;
+  /// The path tracer goes on until the standard error of its mean is below the first, relative, and, where
+  /// kBlockBound holds, until the block error is clearly on one side of it or its standard error below the
+  /// second; at most so many passes.
+  double mean_noise = 0.004, block_error_noise = 0.003;
   int least_passes = 8, most_passes = 64;
 };
 
@@ -43,7 +44,7 @@ struct ViewFigures {
   double block_error = 0;                        ///< unbiased of the path tracer's noise
   double block_error_noise = 0;                  ///< standard error of that
   int passes = 0;                                ///< of the path tracer
-  bool resolved = false;                         ///< did the path tracer come to the noise asked for?
+  bool resolved = false;                         ///< did the path tracer get as far as asked for?
   double picture_seconds = 0, path_seconds = 0;  ///< CPU
   Image picture, reference;
   Mask mask;
