@@ -120,6 +120,7 @@ ViewFigures LookAtView(const Solution& solution, const Scene& scene, const Trial
 
   const Stopwatch path_time;
   out.mask = EmitterMask(scene, RayTracer(scene), view, render);
+  render.samples_per_pixel = options.pass_samples;
   PathTracedHalves halves(scene, view, render, out.mask);
   while (halves.passes() < options.most_passes && !out.resolved) {
     do {

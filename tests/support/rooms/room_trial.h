@@ -13,13 +13,14 @@ namespace lobe::test {
 
 /// What a room is tried with.
 struct TrialOptions {
-  int size = 96;     ///< pixels of the square view, each way
-  int samples = 16;  ///< eye rays a pixel of the solution's view, and of a pass of the path tracer
+  int size = 96;         ///< pixels of the square view, each way
+  int samples = 16;      ///< eye rays a pixel of the solution's view
+  int pass_samples = 9;  ///< and of a pass of the path tracer
   /// The path tracer goes on until the standard error of its mean is below the first, relative, and, where
   /// kBlockBound holds, until the block error is clearly on one side of it or its standard error below the
   /// second; at most so many passes.
   double mean_noise = 0.004, block_error_noise = 0.003;
-  int least_passes = 8, most_passes = 64;
+  int least_passes = 8, most_passes = 112;
 };
 
 /// What must hold (the bounds of the tests).
