@@ -118,6 +118,7 @@ class SceneBuilder {
     scene_.cameras.back().name = name;
   }
 
+  const Material& material(uint32_t index) const { return scene_.materials[index]; }
   Scene Build() const { return scene_; }
 
  private:
