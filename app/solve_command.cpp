@@ -333,7 +333,7 @@ void AddSolveCommand(CLI::App& app, Command* command) {
   solve
       ->add_option("--residual", o.residual,
                    "Stop when unshot over emitted power is below this, between 0 and 1, and in dim places, too, "
-                   "all but 30 times that of their own light has been passed on")
+                   "all but 15 times that of their own light has been passed on")
       ->type_name("R")
       ->capture_default_str();
   solve

@@ -44,7 +44,7 @@ struct SolveOptions {
   /// 1, shared out like light_samples; dim late steps take fewer. Default measured in
   /// docs/validation.md#delta-areas.
   int delta_areas = 256;
-  /// Stop when unshot power is below this fraction of emitted power, in (0, 1). With links also no more than 30
+  /// Stop when unshot power is below this fraction of emitted power, in (0, 1). With links also no more than 15
   /// times this fraction of a place's own light may be unshot, on 99 % of the area (docs/validation.md#settled).
   double residual = 1e-3;
   /// With shooting: a step shoots nodes in order of unshot power until this fraction of it is covered, in (0,

@@ -42,7 +42,7 @@ constexpr int kPatience = 25;
 // A solve goes on until light is settled on all but this share of the surfaces: at the places left out, what
 // is unshot is at most so many times the residual, of the light of the place. docs/validation.md#settled.
 constexpr double kMostUnsettled = 0.01;
-constexpr double kMostLeft = 30;
+constexpr double kMostLeft = 15;
 
 // Emission alone is worth a checkpoint if it took this share of the pause between checkpoints (chosen).
 constexpr double kEmissionShare = 0.1;
@@ -520,7 +520,7 @@ class ProgressiveSolver {
     const auto shooters = uint32_t(std::count(s_.hidden.begin(), s_.hidden.end(), 0));
     if (!GatherLinked(step, field, plan.thinning)) return false;
     PassThrough(gained_);
-    if (!ahead.empty() && !(Left(ahead) <= plan.most_left * s_.residual())) {
+    if (!ahead.empty() && !(Left(ahead) < s_.residual())) {
       Record(step, s_.residual(), 0);
     } else {
       Commit(step, ahead, shooters);

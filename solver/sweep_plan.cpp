@@ -19,7 +19,8 @@ constexpr int kLastCap = 5;
 SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& options) {
   SweepPlan plan;
   int failures = 0, cap = 0;
-  bool failed = false;
+  bool failed = false, doubtful = false;
+  double plain = 1;
   for (size_t step = 1;; ++step) {
     plan.ahead = 0;
     // The first sweep is plain: it tells what plain ones leave. So are those that settle dim places only.
@@ -38,11 +39,15 @@ SweepPlan PlanSweep(const std::vector<StepRecord>& history, const SolveOptions& 
     const double ratio = history[step].residual / history[step - 1].residual;
     failed = false;
     if (plan.ahead == 0) {
-      plan.most_left = std::max(kLeftInAnyCase, ratio);
+      plain = std::max(kLeftInAnyCase, ratio);
       if (!(ratio < 1) && cap < kLastCap) ++cap;
-    } else if (!(ratio <= plan.most_left)) {
-      failed = true;
-      ++failures;
+      doubtful = false;
+    } else {
+      // What has been sent too far is taken back in the next sweep, which may make up for this one.
+      const bool slow = !(ratio <= plain);
+      failed = !(ratio < 1) || (slow && (doubtful || failures > 0));
+      failures += failed;
+      doubtful = slow;
     }
   }
 }

@@ -10,15 +10,13 @@ namespace lobe {
 /// How the next sweep through the links is to be done. All of it follows from the residuals so far, so that a
 /// solve that is resumed goes on as it would have gone.
 struct SweepPlan {
-  /// Shoot ahead this share of what a coarse solution suggests; 0: a plain sweep.
+  /// Shoot ahead this share of what a coarse solution suggests; 0: a plain sweep. A sweep that leaves no less
+  /// than there was is taken back.
   float ahead = 0;
   /// Where the coarse solution says that more than this many times what came should have come, it is
   /// corrected (CoarseTransport). Ordinary rooms have 0.4 to 2.4 (docs/validation.md#coarse). After a failure
   /// every cluster that is overrated is.
   double most_overrated = 4;
-  /// A sweep that shoots ahead is taken back if it leaves more than this times the residual: what the last
-  /// plain sweep left, and half in any case.
-  double most_left = 1;
   /// Every so many-th link: sparse links suffice for light that is dim against the first bounce, since the
   /// noise of a step is in proportion to what it moves. After a failure all links: they settle slow light
   /// sooner.
@@ -28,8 +26,9 @@ struct SweepPlan {
   /// albedo, so solves of albedos below 1 end.
   int degree_cap = 64;
 
-  /// Failures after which a solve shoots ahead no more. With a plain sweep after each, a solve takes about
-  /// so many sweeps more than plain ones do.
+  /// Failures after which a solve shoots ahead no more: sweeps that left no less than there was and were
+  /// taken back, and such as left more than a plain sweep, the first time twice in a row. So a solve takes at
+  /// most three sweeps more than plain ones do.
   static constexpr int kMostFailures = 2;
 };
 

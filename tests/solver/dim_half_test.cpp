@@ -72,7 +72,7 @@ double DimPower(const Solution& s) {
   return sum;
 }
 
-// At 3 % of a place's light (solver.cpp, kMostLeft) a solve may end, and 0.7 / (1 - 0.7) of that is still to
+// At 1.5 % of a place's light (solver.cpp, kMostLeft) a solve may end, and 0.7 / (1 - 0.7) of that is still to
 // come.
 constexpr double kUnsettled = 0.07;
 constexpr double kTakenAway = 0.03;
