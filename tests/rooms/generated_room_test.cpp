@@ -98,6 +98,12 @@ TEST(GeneratedRoomTest, CameraSeesClosedWallsAndNoBacks) {
   }
 }
 
+double Area(const Scene& scene) {
+  double area = 0;
+  for (const Face& face : scene.faces) area += double(scene.Area(face));
+  return area;
+}
+
 TEST(GeneratedRoomTest, ComesBackFromItsFileWithoutAWarning) {
   const ScratchFolder folder;
   for (uint64_t seed = 1; seed <= 20; ++seed) {
@@ -105,7 +111,9 @@ TEST(GeneratedRoomTest, ComesBackFromItsFileWithoutAWarning) {
     const std::string path = folder.File("room.glb");
     WriteSceneGlb(scene, path);
     const Scene read = ReadGltfScene(path);
-    EXPECT_EQ(read.faces.size(), scene.faces.size()) << seed;
+    // Faces that lie back to back are cut along each other's outlines: the same surfaces in more pieces.
+    EXPECT_GE(read.faces.size(), scene.faces.size()) << seed;
+    EXPECT_NEAR(Area(read) / Area(scene), 1, 1e-5) << seed;
     EXPECT_EQ(read.warnings, std::vector<std::string>()) << seed;
   }
 }
