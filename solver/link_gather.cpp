@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "brdf/frame.h"
+#include "sh/degree_cut.h"
 #include "sh/hemisphere_basis.h"
 
 namespace lobe {
@@ -22,56 +24,53 @@ int FirstSector(int ring, int thinning) { return thinning == 1 ? 0 : (5 * ring) 
 LinkField::LinkField(const Scene& scene, const Mesh& mesh) : scene_(scene), mesh_(mesh) {}
 
 LinkField::LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobes,
-                     const std::vector<uint8_t>& degrees)
+                     const std::vector<int>& degrees)
     : scene_(scene), mesh_(mesh), emission_(false), radiance_(mesh.node_count()) {
-  const auto degree = [&](uint32_t n, int own) {
-    return degrees.empty() ? own : std::min<int>(own, degrees[n]);
+  std::map<std::pair<int, int>, DegreeCut> cuts;  // from, to
+  const auto sent = [&](uint32_t patch, int degree) {
+    return degrees.empty() ? degree : std::min(degree, degrees[patch]);
   };
-  std::map<std::pair<int, int>, DegreeCut> cuts;
-  if (lobes.max_degree() > 0) {
-    size_t packed = 0;
-    reader_.resize(mesh.node_count());
-    packed_begin_.resize(mesh.node_count());
-    for (uint32_t n = 0; n < mesh.node_count(); ++n) {
-      const PartDegrees& d = lobes.degrees(n);
-      const int sent = degree(n, d.max_degree());
-      for (const int own : {d.base, d.gloss}) {
-        if (own > sent) cuts.try_emplace({own, sent}, own, sent);
-      }
-      if (sent <= 0) continue;
-      reader_[n] = &readers_.try_emplace(sent, sent).first->second;
-      packed_begin_[n] = packed;
-      packed += reader_[n]->packed_size();
+  size_t packed = 0;
+  for (uint32_t p = 0; p < mesh.patches.size(); ++p) {
+    const PartDegrees& d = lobes.patch_degrees(p);
+    reader_of_patch_.push_back(nullptr);
+    packed_begin_.push_back(packed);
+    for (const int degree : {d.base, d.gloss}) {
+      if (sent(p, degree) < degree) cuts.try_emplace({degree, sent(p, degree)}, degree, sent(p, degree));
     }
-    packed_.resize(packed, 0.0f);
+    const int highest = sent(p, d.max_degree());
+    if (highest <= 0) continue;
+    reader_of_patch_.back() = &readers_.try_emplace(highest, highest).first->second;
+    packed +=
+        reader_of_patch_.back()->packed_size() * (mesh.patches[p].node_end - mesh.patches[p].node_begin);
   }
+  packed_.resize(packed, 0.0f);
   const float scale = 1.0f / std::sqrt(2.0f * kPi);
+  tbb::enumerable_thread_specific<std::vector<float>> scratches;
   tbb::parallel_for(uint32_t(0), uint32_t(mesh.node_count()), [&](uint32_t n) {
-    const PartDegrees& d = lobes.degrees(n);
+    const uint32_t patch = mesh.node_patch[n];
+    const PartDegrees& d = lobes.patch_degrees(patch);
     radiance_[n] = {0, 0, 0, 0};
-    if (d.diffuse()) {
-      const float* base = lobes.base(n);
-      if (d.base >= 0) radiance_[n] = {base[0] * scale, base[1] * scale, base[2] * scale, 0};
-      return;
+    const LobeReader* reader = reader_of_patch_[patch];
+    if (reader) {
+      const auto all = lobes.all(n);
+      if (std::all_of(all.begin(), all.end(), [](float v) { return v == 0; })) return;
+      radiance_[n][3] = 1;
     }
-    const auto all = lobes.all(n);
-    if (std::all_of(all.begin(), all.end(), [](float v) { return v == 0; })) return;
-    const LobeReader* reader = reader_[n];
-    radiance_[n][3] = reader != nullptr;
-    thread_local std::vector<float> cut;
-    const auto add = [&](const float* part, int own) {
-      if (own < 0) return;
-      const int sent = degree(n, own);
-      if (sent < own) {
-        cut.resize(3 * size_t(CoefficientCount(sent)));
-        const DegreeCut& lower = cuts.at({own, sent});
+    const auto add = [&](const float* part, int degree) {
+      if (degree < 0) return;
+      const int to = sent(patch, degree);
+      if (to < degree) {
+        std::vector<float>& cut = scratches.local();
+        cut.resize(3 * size_t(CoefficientCount(to)));
+        const DegreeCut& lower = cuts.at({degree, to});
         for (int c = 0; c < 3; ++c) {
-          lower.Apply(part + c * CoefficientCount(own), cut.data() + c * CoefficientCount(sent));
+          lower.Apply(part + c * CoefficientCount(degree), cut.data() + c * CoefficientCount(to));
         }
         part = cut.data();
       }
       if (reader) {
-        reader->Pack(part, sent, packed_.data() + packed_begin_[n]);
+        reader->Pack(part, to, packed_.data() + PackedAt(n));
       } else {
         for (int c = 0; c < 3; ++c) radiance_[n][c] += part[c] * scale;
       }
@@ -81,10 +80,16 @@ LinkField::LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobe
   });
 }
 
+size_t LinkField::PackedAt(uint32_t node) const {
+  const uint32_t p = mesh_.node_patch[node];
+  return packed_begin_[p] + reader_of_patch_[p]->packed_size() * (node - mesh_.patches[p].node_begin);
+}
+
 Rgb LinkField::Read(uint32_t node, const Vec3& wo_world) const {
   const Vec3 wo = Frame(mesh_.node_normal[node]).ToLocal(wo_world);
   if (wo.z() < 0) return Rgb::Zero();
-  const auto rgb = reader_[node]->Read(packed_.data() + packed_begin_[node], wo.x(), wo.y(), wo.z());
+  const auto rgb =
+      reader_of_patch_[mesh_.node_patch[node]]->Read(packed_.data() + PackedAt(node), wo.x(), wo.y(), wo.z());
   return {rgb[0], rgb[1], rgb[2]};
 }
 

@@ -11,7 +11,6 @@
 #include "brdf/material_lobes.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
-#include "sh/degree_cut.h"
 #include "sh/lobe_reader.h"
 #include "solver/links.h"
 #include "solver/node_lobes.h"
@@ -26,9 +25,9 @@ class LinkField {
   /// Emission of emitters at the ends of chains.
   LinkField(const Scene& scene, const Mesh& mesh);
   /// Lobes of nodes, zero where a node sends nothing. Makes a copy fit for reading, of at most these degrees
-  /// (per node; empty: as they are), with the same flux.
+  /// (per patch; empty: as they are), with the same flux.
   LinkField(const Scene& scene, const Mesh& mesh, const NodeLobes& lobes,
-            const std::vector<uint8_t>& degrees = {});
+            const std::vector<int>& degrees = {});
 
   bool emission() const { return emission_; }
   /// True where all light of the field is the same in every direction: reading is one load.
@@ -41,13 +40,15 @@ class LinkField {
   const Rgb& emitted(uint32_t node) const;
 
  private:
+  size_t PackedAt(uint32_t node) const;
+
   const Scene& scene_;
   const Mesh& mesh_;
   bool emission_ = true;
-  // Lobes as sh/lobe_reader.h wants them, base and gloss together; reader and place by node.
+  // Lobes as sh/lobe_reader.h wants them, base and gloss together; reader and place by patch and node.
+  std::vector<const LobeReader*> reader_of_patch_;  // null: the same in every direction
   std::map<int, LobeReader> readers_;
-  std::vector<const LobeReader*> reader_;  // null: diffuse
-  std::vector<size_t> packed_begin_;
+  std::vector<size_t> packed_begin_;  // per patch
   std::vector<float> packed_;
   // Padded to 16 bytes; the fourth float is 0 for a diffuse node and 1 for one with a lobe to read.
   std::vector<std::array<float, 4>> radiance_;

@@ -1,44 +1,36 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "brdf/material_lobes.h"
 #include "scene/mesh.h"
-#include "solver/links.h"
 
 namespace lobe {
 
-/// How finely links resolve the lobes they read, as a limit on the degree of what each node sends.
+/// How finely links resolve the lobes they read, as a limit on the degree of what a node sends.
 ///
-/// A lobe of K coefficients that is read N times, in directions spread by chance, sends on average the energy
-/// it has. But one lobe of that K-dimensional space is read where it is largest: it sends
-/// (1 + sqrt(K / N))^2 times its energy (the largest eigenvalue of the Gram matrix of N random samples of K
-/// orthonormal functions: Marchenko and Pastur, Math. USSR Sbornik 1, 1967). Links are traced once, so light
-/// in such lobes of facing bright walls would grow without end. Reflection multiplies the norm of a lobe
-/// (L2 under the cosine) by at most the albedo a. So no loop of reflections grows if
-///   a (1 + sqrt(K / N)) <= (1 + a) / 2,
+/// Lobes of K coefficients that are read through M links a node, in directions spread by chance, send on
+/// average the energy they have. But some of the fields of such lobes are read where they are largest: they
+/// send (1 + sqrt(K / M))^2 times their energy (the largest eigenvalue of the Gram matrix of M random samples
+/// of K orthonormal functions: Marchenko and Pastur, Math. USSR Sbornik 1, 1967; finer meshes on either side
+/// do not change the ratio, since light that comes back has at most the freedom of the coarser side). Links
+/// are traced once, so light in such fields between facing bright walls would grow without end. Reflection
+/// multiplies the norm of a lobe (L2 under the cosine) by at most the albedo a. So no loop of reflections
+/// grows if
+///   a (1 + sqrt(K / M)) <= (1 + a) / 2,
 /// which is what limits K here; the other half of the distance from a to 1 is left for what the model
-/// neglects: nodes have more or fewer reads than those around them, and a facet's normal is not the shading
-/// normal. That bound is for the one worst loop. 40 reads for each coefficient, a gain of 1.16, are enough
-/// for any albedo in practice; where they are not, PlanSweep lowers the degree further.
-/// docs/validation.md#link-resolution; LinkResolutionTest measures the growth.
-class LinkResolution {
- public:
-  LinkResolution() = default;
-  /// `node_area`: 0 for hidden nodes.
-  LinkResolution(const Mesh& mesh, const Links& links, const std::vector<MaterialLobes>& materials,
-                 const std::vector<double>& node_area);
+/// neglects: links and nodes are not all alike, and a facet's normal is not the shading normal. That bound is
+/// for the worst field. 40 links for each coefficient, a gain of 1.16, are enough for any albedo in practice;
+/// where they are not, PlanSweep lowers the degree further. docs/validation.md#link-resolution;
+/// LinkResolutionTest measures the growth.
+int ResolvedDegree(const MaterialLobes& material, int links);
 
-  /// Per node: the highest degree that links resolve, and not above `cap`. Empty if no node sends less than
-  /// it has.
-  ///
-  /// The first step sends all that emission has brought, once: nothing can grow, and it is most of the light.
-  /// Its degree is limited by `cap` alone.
-  std::vector<uint8_t> Degrees(int step, int cap) const;
-
- private:
-  std::vector<uint8_t> resolved_;  // per node; empty where all materials are diffuse
-};
+/// Per patch, the highest degree that its nodes send in a step through so many `links` (Links::Options), not
+/// above `cap`.
+///
+/// The first step sends all that emission has brought, once: nothing can grow, and it is most of the light.
+/// Its degree is limited by `cap` alone.
+std::vector<int> SentDegrees(const Mesh& mesh, const std::vector<MaterialLobes>& materials, int links,
+                             int step, int cap);
 
 }  // namespace lobe

@@ -401,7 +401,6 @@ class ProgressiveSolver {
     rays_under_way_ = 0;
     s_.hidden = links_->hidden();
     area_ = NodeAreas(s_.mesh, s_.hidden);
-    if (by_links_) resolution_ = LinkResolution(s_.mesh, *links_, materials_, area_);
     if (by_links_ && s_.options.accelerate) {
       coarse_ = std::make_unique<CoarseTransport>(s_.mesh, *links_, materials_, area_, opposite_);
     }
@@ -516,7 +515,8 @@ class ProgressiveSolver {
     }
     shooting_ = s_.unshot;
     if (!ahead.empty()) shooting_.AddScaled(s_.total, ahead);
-    const LinkField field(s_.scene, s_.mesh, shooting_, resolution_.Degrees(step, plan.degree_cap));
+    const LinkField field(s_.scene, s_.mesh, shooting_,
+                          SentDegrees(s_.mesh, materials_, s_.options.links, step, plan.degree_cap));
     const auto shooters = uint32_t(std::count(s_.hidden.begin(), s_.hidden.end(), 0));
     if (!GatherLinked(step, field, plan.thinning)) return false;
     PassThrough(gained_);
@@ -748,7 +748,6 @@ class ProgressiveSolver {
   std::vector<MaterialLobes> materials_;
   std::vector<PlanarMirror> planar_mirrors_;
   std::unique_ptr<Links> links_;
-  LinkResolution resolution_;
   std::unique_ptr<CoarseTransport> coarse_;
   std::vector<uint32_t> opposite_;  // per node, across a translucent sheet; empty if there is none
   std::vector<double> area_;
