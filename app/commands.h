@@ -17,6 +17,7 @@ enum ExitCode : int {
   kFailed = 1,        ///< something was wrong with the input or the machine
   kWrongUsage = 2,    ///< unknown, missing or out-of-range flags
   kStoppedEarly = 3,  ///< interrupt, time or step limit, or not converging; the result is saved
+  kNotTrusted = 4,    ///< finished and saved, but its own ledger says not to trust it (solver/trust.h)
 };
 
 /// A flag's value is wrong; the message is a sentence that names flag and value. Exit code 2.

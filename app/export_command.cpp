@@ -20,6 +20,7 @@ ExitCode RunExport(const ExportFlags& flags, Console& console) {
   CheckExportFolder(flags.folder);
   const SitePacking packing{flags.full ? ViewingPrecision::kFloat : ViewingPrecision::kHalf, flags.gzip};
   const PackedSolution packed = AddSolution(flags.solution, packing, &site);
+  if (!packed.trust.empty()) console.Warn(packed.trust);
   WriteExportFolder(flags.folder, site, *interrupted);
 
   const double per_node = packed.nodes > 0 ? double(packed.bytes) / double(packed.nodes) : 0;

@@ -4,6 +4,7 @@
 #include "app/lobe_flags.h"
 #include "app/report.h"
 #include "scene/gltf_scene.h"
+#include "solver/trust.h"
 
 namespace lobe {
 namespace {
@@ -74,9 +75,13 @@ ExitCode ShowSolution(const InfoFlags& flags, Console& console) {
                          {"history", HistoryJson(s.history)},
                          {"stop_reason", Name(s.stop_reason)},
                          {"residual", s.residual()},
+                         {"trust", Name(JudgeSolution(s))},
                          {"resumed", s.resumed},
                          {"checkpoint", s.stop_reason == StopReason::kUnfinished},
                          {"solve_seconds", s.solve_seconds}};
+  if (const std::string sentence = TrustSentence(s); !sentence.empty()) {
+    console.Warn(flags.file + ": " + sentence);
+  }
   console.Result(flags.file + ": solution\n" + SceneText(s.scene) + MeshText(s) + "\n" + MaterialText(rows) +
                      CostText(rows) + "\nsettings\n" + SettingsText(s.options) + "\nledger\n" +
                      LedgerText(s.ledger) + "\nconvergence\n" + HistoryText(s.history) + "  " + StopText(s) +

@@ -13,6 +13,7 @@
 #include "scene/closest_point.h"
 #include "scene/glb_writer.h"
 #include "scene/input_error.h"
+#include "solver/trust.h"
 
 namespace lobe {
 namespace {
@@ -230,6 +231,9 @@ ExitCode RunInspect(InspectFlags flags, Console& console) {
   Validate(&flags);
   if (flags.output) CheckWritable(*flags.output);
   const Solution solution = ReadSolution(flags.solution);
+  if (const std::string sentence = TrustSentence(solution); !sentence.empty()) {
+    console.Warn(flags.solution + ": " + sentence);
+  }
   const Inspection inspection = Inspect(solution, ChooseNode(solution, flags));
   if (flags.output) {
     WritePicture(inspection, solution, *flags.output);

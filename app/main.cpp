@@ -34,7 +34,8 @@ constexpr const char* kFooter =
     "\n"
     "Results go to standard output, progress and warnings to standard error.\n"
     "Exit codes: 0 done; 1 something was wrong with the input or the machine; 2 wrong usage;\n"
-    "3 stopped early (interrupt, a time or step limit, not converging), result saved.\n"
+    "3 stopped early (interrupt, a time or step limit, not converging), result saved;\n"
+    "4 finished and saved, but its ledger says not to trust it.\n"
     "`lobe COMMAND --help` explains a command's flags.";
 
 void AddCommonFlags(CLI::App* command, CommonFlags* flags) {

@@ -13,11 +13,14 @@ namespace lobe {
 /// tracing, the scene of a solution or a scene that was never solved.
 class PictureSource {
  public:
-  /// Throws InputError; lobes need a solution.
-  PictureSource(const std::string& path, bool path_traced);
+  /// Throws InputError; lobes need a solution, and one that has converged unless `unconverged` lets others
+  /// pass.
+  PictureSource(const std::string& path, bool path_traced, bool unconverged);
   ~PictureSource();
 
   const Scene& scene() const { return *scene_; }
+  /// What is to be said of the solution's lobes (solver/trust.h); empty if nothing, and by path tracing.
+  std::string TrustSentence() const;
   const RayTracer& tracer() const;
   /// By path tracing `layers` must be empty.
   LayeredImage Render(const CameraView& view, const RenderOptions& options, const LayerSet& layers,

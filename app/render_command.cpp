@@ -24,7 +24,7 @@ struct RenderFlags {
   RenderOptions options;
 
   // From the flags, once checked.
-  bool path_traced = false;
+  bool path_traced = false, unconverged = false;
   LayerSet layer_set;
 };
 
@@ -121,7 +121,10 @@ void SayFigures(const RenderOptions& options, const RenderReport& report, const 
 ExitCode RunRender(RenderFlags flags, Console& console) {
   Validate(&flags);
   const std::atomic<bool>* interrupted = CatchInterrupts();
-  const PictureSource source(flags.solution, flags.path_traced);  // shared by all views
+  const PictureSource source(flags.solution, flags.path_traced, flags.unconverged);  // shared by all views
+  if (const std::string sentence = source.TrustSentence(); !sentence.empty()) {
+    console.Warn(flags.solution + ": " + sentence);
+  }
   const std::vector<RenderView> views = flags.views.Choose(source.scene());
   const std::vector<ViewFiles> files = flags.outputs.FilesOf(views, flags.solution);
 
@@ -243,6 +246,9 @@ void AddRenderCommand(CLI::App& app, Command* command) {
           "printed")
       ->type_name("X")
       ->capture_default_str();
+  render->add_flag("--unconverged", flags->unconverged,
+                   "Render a solution that did not converge, too; else it is refused, since its light means "
+                   "nothing");
   AddSeedFlag(render, &flags->options.seed);
   render->callback(
       [flags, command] { *command = [flags](Console& console) { return RunRender(*flags, console); }; });

@@ -8,6 +8,7 @@
 #include "app/program_path.h"
 #include "scene/input_error.h"
 #include "scene/read_file.h"
+#include "solver/trust.h"
 
 namespace lobe {
 namespace {
@@ -66,6 +67,9 @@ PackedSolution AddSolution(const std::string& path, const SitePacking& packing, 
   {
     const Solution solution = ReadSolution(path);
     packed.nodes = solution.mesh.node_count();
+    if (const std::string sentence = TrustSentence(solution); !sentence.empty()) {
+      packed.trust = path + ": " + sentence;
+    }
     bytes = ViewingFile(solution, packing.precision, path + " reduced to what viewing needs");
   }
   if (packing.gzip) bytes = Gzip(bytes);

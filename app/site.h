@@ -28,6 +28,7 @@ struct SitePacking {
 struct PackedSolution {
   std::string file;  ///< "solution.glb" or "solution.glb.gz"
   size_t nodes = 0, bytes = 0;
+  std::string trust;  ///< what is to be said of it (solver/trust.h), with its path; empty: nothing
 };
 
 /// Adds the solution at `path` and view.json, which tells the page its file, its title and Lobe's version,

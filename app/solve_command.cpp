@@ -20,6 +20,7 @@
 #include "scene/input_error.h"
 #include "solver/resume.h"
 #include "solver/solver.h"
+#include "solver/trust.h"
 
 namespace lobe {
 namespace {
@@ -157,6 +158,7 @@ nlohmann::json SolveJson(const Solution& s, const TimeSplit& split, double cpu_s
   out["settings"] = SettingsJson(s.options);
   out["stop_reason"] = Name(s.stop_reason);
   out["residual"] = s.residual();
+  out["trust"] = Name(JudgeSolution(s));
   out["solve_seconds"] = s.solve_seconds;
   out["resumed"] = s.resumed;
   out["cpu_seconds"] = cpu_seconds;
@@ -239,13 +241,18 @@ ExitCode RunSolve(SolveFlags flags, const CLI::App& command, Console& console) {
         " % of the emitted power fell on ideal mirrors, where shooting stops: light thrown by mirrors "
         "is missing from the lobes; --transport links follows it");
   }
+  if (JudgeSolution(solution) == Trust::kCoarse) console.Warn(TrustSentence(solution));
   console.Say(MeshText(solution));
   console.Say(StopText(solution) + Format("; %.2f s", solution.solve_seconds) +
               Format(" (%.2f CPU s)", cpu_seconds));
   console.Say("wrote " + flags.output);
   if (console.json()) console.Result("", SolveJson(solution, split, cpu_seconds, flags.output));
 
-  if (solution.stop_reason == StopReason::kConverged) return kDone;
+  if (solution.stop_reason == StopReason::kConverged) {
+    if (JudgeSolution(solution) != Trust::kWrong) return kDone;
+    PrintError(flags.output + ": was saved, but " + TrustSentence(solution));
+    return kNotTrusted;
+  }
   PrintError("stopped early, " + StopText(solution) + "; the solution was saved as " + flags.output +
              ", and --resume goes on from it");
   return kStoppedEarly;
@@ -261,6 +268,7 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       "less than --residual of the emitted power is left. Lengths are in metres; a glTF emissive strength of "
       "1\n"
       "is a radiance of 1 W/(m2 sr). An interrupt (Ctrl-C) or a limit saves what there is and exits with 3;\n"
+      "a solution whose mesh made or lost more than a tenth of the light is saved, and the exit code is 4;\n"
       "--resume goes on from there to the same bits, and a solve that was killed from its last checkpoint.\n"
       "\n"
       "Examples:\n"
@@ -331,9 +339,10 @@ void AddSolveCommand(CLI::App& app, Command* command) {
       ->type_name("N")
       ->capture_default_str();
   solve
-      ->add_option("--residual", o.residual,
-                   "Stop when unshot over emitted power is below this, between 0 and 1, and in dim places, too, "
-                   "all but 15 times that of their own light has been passed on")
+      ->add_option(
+          "--residual", o.residual,
+          "Stop when unshot over emitted power is below this, between 0 and 1, and in dim places, too, "
+          "all but 15 times that of their own light has been passed on")
       ->type_name("R")
       ->capture_default_str();
   solve

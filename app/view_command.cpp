@@ -39,6 +39,7 @@ ExitCode RunView(const ViewCommandFlags& flags, Console& console) {
   const auto server = TakePort(flags.port);
   const SitePacking packing{flags.half ? ViewingPrecision::kHalf : ViewingPrecision::kFloat};
   const PackedSolution packed = AddSolution(flags.solution, packing, &site);
+  if (!packed.trust.empty()) console.Warn(packed.trust);
 
   const std::atomic<bool>* interrupted = CatchInterrupts();
   server->Start(std::move(site));

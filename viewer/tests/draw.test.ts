@@ -39,7 +39,7 @@ function solutionOf(patches: Patch[], materials = [material()]): Solution {
   });
   return {
     title: 'test', materials, surfaceNames: ['s'], patches, faces: null, cameras: [], nodeCount,
-    elementCount: 2 * patches.length, exposureScale: 1,
+    elementCount: 2 * patches.length, exposureScale: 1, trust: '',
   };
 }
 

@@ -3,12 +3,13 @@ import { DataUtils, InterleavedBufferAttribute, Matrix4, type BufferAttribute } 
 import { coefficientCount, toZernike } from '../sh/zernike';
 import { readMaterial, type GltfMaterial, type LobeMaterial } from './material';
 import { Problem } from './problem';
+import { trustOf, type TrustRecord } from './trust';
 import { kMostDegree, type Faces, type Lobes, type NamedCamera, type Patch, type Side, type Solution } from './solution';
 
 export const kExtension = 'LOBE_directional_radiance';
 const kVersion = 1;
 
-interface DocumentExtension {
+interface DocumentExtension extends TrustRecord {
   version?: number;
   basis?: string;
   frame?: string;
@@ -289,5 +290,6 @@ export async function readSolution(parser: Parser, title: string): Promise<Solut
     nodeCount,
     elementCount,
     exposureScale,
+    trust: trustOf(extension),
   };
 }

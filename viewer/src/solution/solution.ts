@@ -97,6 +97,8 @@ export interface Solution {
   elementCount: number;
   /** Radiance times this shows most of the scene below 1. */
   exposureScale: number;
+  /** Why its light is not to be trusted, or not all there; empty if it is. */
+  trust: string;
 }
 
 /** Of a node of the whole solution: its patch, and its number there. */

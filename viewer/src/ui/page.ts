@@ -86,7 +86,9 @@ export class Page {
     region('title').textContent = solution.title;
     region('title').title = solution.title;
     const count = (n: number) => n.toLocaleString('en').replaceAll(',', '\u202f');
-    region('facts').textContent = `${count(solution.nodeCount)} nodes, ${count(solution.elementCount)} elements`;
+    region('facts').textContent = `${count(solution.nodeCount)} nodes, ${count(solution.elementCount)} elements` +
+      (solution.trust ? `; ${solution.trust}` : '');
+    region('facts').classList.toggle('warning', solution.trust !== '');
     document.title = solution.title;
     document.body.classList.add('open');
 
